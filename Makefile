@@ -1,0 +1,96 @@
+# The front door. `make help` lists what there is; CMakeLists.txt and CMakePresets.json hold the build itself.
+
+BUILD = build
+PREFIX = /usr/local
+OUT = heliostat-demo.png
+DEPENDENCIES = yes
+JOBS := $(shell nproc 2>/dev/null || echo 2)
+
+# Every test program prints the name of each of its tests, so show what they print.
+CTEST = ctest --verbose --no-tests=error --parallel $(JOBS)
+
+ifeq ($(DEPENDENCIES),yes)
+install_dependencies = @scripts/install-dependencies.sh
+else
+install_dependencies = @:
+endif
+
+.NOTPARALLEL:
+.PHONY: all demo test test-long san tsan core format check-format lint install clean help
+.PHONY: dependencies-build dependencies-test dependencies-ci build-with-tests
+
+all: dependencies-build $(BUILD)/build.ninja
+	@cmake --build $(BUILD) --target heliostat_program
+
+demo: all
+	$(BUILD)/heliostat render --out $(OUT)
+	@echo "The picture is in $(abspath $(OUT))"
+
+test: build-with-tests
+	@cd $(BUILD) && $(CTEST) --label-exclude long
+
+test-long: build-with-tests
+	@cd $(BUILD) && $(CTEST) --label-regex long
+
+san: dependencies-test build-asan/build.ninja
+	@cmake --build build-asan
+	@cd build-asan && $(CTEST) --label-exclude long
+
+# What shares data between threads, and by test_cli whole pictures: test_render would take ten times as long.
+tsan: dependencies-test build-tsan/build.ninja
+	@cmake --build build-tsan
+	@cd build-tsan && $(CTEST) --tests-regex '^test_(core|environment|tables|pools|cli)$$'
+
+# Only the sampling core: libm and threads, no other library.
+core: dependencies-test build-core/build.ninja
+	@cmake --build build-core
+	@cd build-core && $(CTEST) --label-exclude long
+
+format: dependencies-ci
+	@scripts/format.sh
+
+check-format: dependencies-ci
+	@scripts/format.sh --check
+
+lint: dependencies-ci build-with-tests
+	@scripts/lint.sh $(BUILD)
+
+install: dependencies-build $(BUILD)/build.ninja
+	@grep -qxF 'CMAKE_INSTALL_PREFIX:PATH=$(abspath $(PREFIX))' $(BUILD)/CMakeCache.txt \
+	    || cmake -DCMAKE_INSTALL_PREFIX='$(abspath $(PREFIX))' $(BUILD)
+	@cmake --build $(BUILD) --target heliostat heliostat_program
+	@cmake --install $(BUILD)
+
+clean:
+	rm -rf build build-asan build-tsan build-core build-gcc build-clang
+
+help:
+	@echo 'make                        builds $(BUILD)/heliostat'
+	@echo 'make demo [OUT=PICTURE]     builds, lights a dragon with a sunrise and says where the picture is'
+	@echo 'make test                   builds and runs the tests; make test-long: those that take longer'
+	@echo 'make san, tsan              the same tests with address and undefined, thread sanitizers'
+	@echo 'make core                   builds and tests the sampling core without any other library'
+	@echo 'make format, check-format   formats the code, or tells where it is not formatted'
+	@echo 'make lint                   clang-tidy and cppcheck'
+	@echo 'make install PREFIX=DIR     installs library, headers and program (default: $(PREFIX))'
+	@echo 'make clean                  removes what was built'
+	@echo
+	@echo 'On Debian and Ubuntu each of them first installs the packages that it needs and that are missing;'
+	@echo 'DEPENDENCIES=no keeps it from that.'
+
+build-with-tests: dependencies-test $(BUILD)/build.ninja
+	@grep -qxF 'BUILD_TESTING:BOOL=ON' $(BUILD)/CMakeCache.txt || cmake -DBUILD_TESTING=ON $(BUILD)
+	@cmake --build $(BUILD)
+
+# Configures once; from then on ninja runs CMake again when it is needed.
+$(BUILD)/build.ninja: | dependencies-build
+	@cmake --preset release -B $(BUILD)
+build-%/build.ninja: | dependencies-test
+	@cmake --preset $*
+
+dependencies-build:
+	$(install_dependencies) build
+dependencies-test:
+	$(install_dependencies) test
+dependencies-ci:
+	$(install_dependencies) ci

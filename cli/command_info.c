@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: MIT */
+#include "command.h"
+#include "machine.h"
+#include "message.h"
+
+#include <heliostat/core.h>
+
+#include <stdio.h>
+
+typedef struct feature {
+    const char *name, *use;
+    bool present;
+} feature;
+
+static const feature features[] = {
+#ifdef HELIO_WITH_OPENEXR
+    {"OpenEXR", "read and write EXR", true},
+#else
+    {"OpenEXR", "read and write EXR", false},
+#endif
+#ifdef HELIO_WITH_PNG
+    {"PNG", "read and write PNG", true},
+#else
+    {"PNG", "read and write PNG", false},
+#endif
+#ifdef HELIO_WITH_JPEG
+    {"JPEG", "read JPEG", true},
+#else
+    {"JPEG", "read JPEG", false},
+#endif
+#ifdef HELIO_WITH_ASSIMP
+    {"assimp", "read meshes", true},
+#else
+    {"assimp", "read meshes", false},
+#endif
+#ifdef HELIO_WITH_EMBREE
+    {"Embree", "trace rays", true},
+#else
+    {"Embree", "trace rays", false},
+#endif
+};
+
+int command_info(const cli_options *options)
+{
+    (void)options;
+    char processor[256];
+    machine_processor(processor, sizeof processor);
+    uint32_t version = helio_version();
+    printf("heliostat   %s\n", HELIO_VERSION_TEXT);
+    printf("library     %u.%u.%u\n", version >> 16, version >> 8 & 0xff, version & 0xff);
+    printf("processor   %s\n", processor);
+    printf("cores       %u logical\n", machine_cores());
+    printf("isa         %s\n", machine_isa());
+    printf("backends    cpu\n");
+    printf("features\n");
+    for (size_t i = 0; i < sizeof features / sizeof features[0]; i++)
+        printf("  %-8s  %-3s  %s\n", features[i].name, features[i].present ? "yes" : "no", features[i].use);
+    return EXIT_CODE_OK;
+}

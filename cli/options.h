@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: MIT
+ * options.h - the options of all commands: one table, from which parser, help and manual page are made. */
+#ifndef HELIOSTAT_CLI_OPTIONS_H
+#define HELIOSTAT_CLI_OPTIONS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Commands, as bits. */
+enum {
+    COMMAND_RENDER = 1 << 0,
+    COMMAND_INFO = 1 << 1,
+    COMMAND_HELP = 1 << 2,
+    COMMAND_ALL = COMMAND_RENDER | COMMAND_INFO | COMMAND_HELP
+};
+
+/* What the command line says. A pointer that is NULL means that the option was not given and has no fixed default. */
+typedef struct cli_options {
+    const char *env, *layout;
+    uint32_t env_size;
+    double rotate, intensity;
+    bool flip;
+
+    const char *mesh, *material, *camera, *ground;
+
+    uint32_t spp, aa, seed;
+    const char *strategy, *weighting, *decorrelate, *visibility;
+    double brdf_share;
+    bool no_beta;
+
+    uint32_t size[2]; /* width, height */
+    const char *background, *tonemap, *out, *stats;
+    double exposure; /* stops; NaN means auto */
+    bool aovs;
+
+    const char *backend;
+    uint32_t threads; /* 0: one per logical core */
+    bool quiet, verbose;
+
+    bool help, man;
+    const char *topic; /* the command that help is about, or NULL */
+} cli_options;
+
+typedef enum option_kind {
+    OPTION_FLAG,     /* bool, takes no value */
+    OPTION_TEXT,     /* const char *, not empty */
+    OPTION_CHOICE,   /* const char *, one of the choices */
+    OPTION_WHOLE,    /* uint32_t in minimum..maximum */
+    OPTION_NUMBER,   /* double in minimum..maximum */
+    OPTION_EXPOSURE, /* double in minimum..maximum, or the word auto: NaN */
+    OPTION_SIZE,     /* uint32_t [2], each in minimum..maximum, as WxH */
+} option_kind;
+
+/* Groups in the order in which the help shows them. */
+typedef enum option_group {
+    GROUP_ENVIRONMENT,
+    GROUP_SCENE,
+    GROUP_SAMPLING,
+    GROUP_PICTURE,
+    GROUP_PROGRAM,
+    GROUP_COUNT
+} option_group;
+
+typedef struct cli_option {
+    const char *name;     /* without the two dashes */
+    char letter;          /* short form, or 0 */
+    const char *argument; /* what the value is called in the help; NULL for a flag */
+    const char *initial;  /* default, parsed like a value from the command line; NULL: 0, NULL or false */
+    const char *shown;    /* default in words, where initial does not say it */
+    const char *help;     /* one sentence without full stop; the choices, if any, follow it */
+    const char *choices;  /* separated by single spaces */
+    option_group group;
+    unsigned commands;
+    option_kind kind;
+    double minimum, maximum;
+    size_t offset; /* of the member of options that receives the value */
+} cli_option;
+
+extern const cli_option option_table[];
+extern const size_t option_count;
+extern const char *const option_group_names[GROUP_COUNT];
+
+/* Writes the choices of an option as words: "auto, cpu or vulkan". */
+void option_choices(const cli_option *option, char *text, size_t size);
+
+/* The default as the help shows it, or NULL where there is none to show. */
+const char *option_default(const cli_option *option);
+
+/* Sets the defaults and then reads the arguments that follow the command's name. Returns EXIT_CODE_OK, or
+ * EXIT_CODE_USAGE after one sentence on stderr. The strings stay the caller's. */
+int options_parse(cli_options *options, unsigned command, const char *command_name, int count, char **arguments);
+
+#endif

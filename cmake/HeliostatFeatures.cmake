@@ -1,0 +1,62 @@
+# What the library can be built with or without. Adds to SOURCES; sets FEATURE_DEFINITIONS, FEATURE_LIBRARIES (targets)
+# and EMBREE_MAJOR. The sampling core itself needs libm and threads only.
+
+set(FEATURE_DEFINITIONS "")
+set(CMAKE_THREAD_PREFER_PTHREAD ON)
+set(THREADS_PREFER_PTHREAD_FLAG ON)
+find_package(Threads REQUIRED)
+set(FEATURE_LIBRARIES Threads::Threads m)
+
+# Finds a package or says in one sentence which Debian package brings it and how to build without it.
+# The log level: Debian's Imath, a part of OpenEXR, complains at length about a Python module that nobody asked for.
+macro(heliostat_find feature debian_package)
+    set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
+    find_package(${ARGN})
+    unset(CMAKE_MESSAGE_LOG_LEVEL)
+    if(NOT ${ARGV2}_FOUND)
+        message(FATAL_ERROR "${ARGV2} was not found: install ${debian_package}, or build without it by "
+                            "-DHELIO_WITH_${feature}=OFF.")
+    endif()
+endmacro()
+
+if(HELIO_WITH_OPENEXR)
+    heliostat_find(OPENEXR libopenexr-dev OpenEXR 3.1 CONFIG QUIET)
+    list(APPEND SOURCES src/image/exr_channels.c src/image/exr_read.c src/image/exr_rgba.c src/image/exr_window.c
+         src/image/exr_write.c)
+    list(APPEND FEATURE_DEFINITIONS HELIO_WITH_OPENEXR=1)
+    list(APPEND FEATURE_LIBRARIES OpenEXR::OpenEXRCore OpenEXR::OpenEXR)
+endif()
+
+if(HELIO_WITH_PNG)
+    heliostat_find(PNG libpng-dev PNG QUIET)
+    list(APPEND SOURCES src/image/png_read.c src/image/png_write.c)
+    list(APPEND FEATURE_DEFINITIONS HELIO_WITH_PNG=1)
+    list(APPEND FEATURE_LIBRARIES PNG::PNG)
+endif()
+
+if(HELIO_WITH_JPEG)
+    heliostat_find(JPEG libjpeg-dev JPEG QUIET)
+    list(APPEND SOURCES src/image/jpeg.c)
+    list(APPEND FEATURE_DEFINITIONS HELIO_WITH_JPEG=1)
+    list(APPEND FEATURE_LIBRARIES JPEG::JPEG)
+endif()
+
+if(HELIO_WITH_ASSIMP)
+    heliostat_find(ASSIMP libassimp-dev assimp CONFIG QUIET)
+    heliostat_find(ASSIMP zlib1g-dev ZLIB QUIET) # for .ply.gz
+    list(APPEND SOURCES src/scene/mesh_assimp.c)
+    list(APPEND FEATURE_DEFINITIONS HELIO_WITH_ASSIMP=1)
+    list(APPEND FEATURE_LIBRARIES assimp::assimp ZLIB::ZLIB)
+endif()
+
+if(HELIO_WITH_EMBREE)
+    set(EMBREE_MAJOR 4)
+    find_package(embree 4 CONFIG QUIET)
+    if(NOT embree_FOUND)
+        set(EMBREE_MAJOR 3)
+        heliostat_find(EMBREE libembree-dev embree 3 CONFIG QUIET)
+    endif()
+    list(APPEND SOURCES src/cpu/rays.c)
+    list(APPEND FEATURE_DEFINITIONS HELIO_WITH_EMBREE=1 HELIO_EMBREE_MAJOR=${EMBREE_MAJOR})
+    list(APPEND FEATURE_LIBRARIES embree)
+endif()

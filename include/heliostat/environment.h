@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * environment.h - this frame's environment map as a cube: 6 faces of R x R texels of linear RGB.
+ *
+ * Faces come in the order +X -X +Y -Y +Z -Z, each oriented as in the Vulkan and OpenGL cube map tables. A direction d with
+ * major axis ma has face coordinates u = sc / |ma|, v = tc / |ma| in [-1, 1]; column = floor((u + 1) / 2 R), row likewise
+ * from v, both at most R - 1. Lighting takes a texel as constant over its area.
+ *
+ * Each update starts a new frame: helio_environment_frame() counts them, and tables and pools know which they belong to.
+ */
+#ifndef HELIOSTAT_ENVIRONMENT_H
+#define HELIOSTAT_ENVIRONMENT_H
+
+#include <heliostat/core.h>
+#include <heliostat/image.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct helio_environment helio_environment;
+
+typedef struct helio_environment_desc {
+    uint32_t cube_size;     /* R, texels along a face's edge, 1..4096; default 512 */
+    uint32_t width, height; /* pixels of the maps to come; required, 1..65536 each, at most 2^28 in all */
+    helio_layout layout;    /* their layout; default: guessed from the shape, see helio_layout_guess() */
+} helio_environment_desc;
+
+/* What one update saw. A channel that is NaN or Inf makes its pixel 0; a negative channel becomes 0. Channels beyond 1e30 in
+ * magnitude count as infinite: no light is that bright, and sums of such numbers would not fit a float. */
+typedef struct helio_environment_info {
+    uint64_t nan;          /* pixels of the map with a NaN channel */
+    uint64_t infinite;     /* pixels with a channel that is infinite or above 1e30, and none NaN */
+    uint64_t negative;     /* pixels with a negative channel, and none NaN or infinite */
+    double flux[6];        /* integral of luminance over each face: radiance unit x sr */
+    double mean_luminance; /* over the sphere: sum of flux / (4 pi) */
+    float max_luminance;   /* of a texel of the cube */
+    float auto_exposure;   /* stops that bring a white surface (albedo 1) facing the light of this frame to 0.8; 0 for a
+                               black map. Depends on the map alone, not on rotation, intensity or scene. */
+} helio_environment_info;
+
+HELIO_API helio_status helio_environment_create(helio_context *context, const helio_environment_desc *desc,
+                                                helio_environment **environment);
+HELIO_API void helio_environment_destroy(helio_environment *environment);
+
+/* Makes the cube of a new frame. rgb: [height][width][3] as promised at creation, copied; may hold any bits.
+ * A cube texel is the average of the map over the texel's solid angle, so light is neither lost nor gained when the map
+ * shrinks: a sun of one pixel keeps its flux. info may be NULL. */
+HELIO_API helio_status helio_environment_update(helio_environment *environment, const float *rgb,
+                                                helio_environment_info *info);
+
+/* How the map is turned and scaled when it is looked up; rebuilds nothing. */
+typedef struct helio_orientation {
+    float rotate;    /* degrees about +Y, from +Z towards +X; turns the map and its light */
+    bool flip;       /* mirrors the map left to right (x becomes -x) before it is turned */
+    float intensity; /* factor of all radiance, > 0, at most 1e6; default 1 */
+} helio_orientation;
+
+HELIO_API helio_status helio_environment_orient(helio_environment *environment, const helio_orientation *orientation);
+
+/* Radiance that arrives from a direction in world space: nearest texel, orientation applied. */
+HELIO_API void helio_environment_radiance(const helio_environment *environment, const float direction[3],
+                                          float radiance[3]);
+
+/* The same, interpolated between texels, across the edges of faces too: for showing the map, not for lighting. */
+HELIO_API void helio_environment_filtered(const helio_environment *environment, const float direction[3],
+                                          float radiance[3]);
+
+HELIO_API uint32_t helio_environment_cube_size(const helio_environment *environment);
+
+/* Number of updates so far. */
+HELIO_API uint64_t helio_environment_frame(const helio_environment *environment);
+
+/* The cube: [6][R][R][3], before orientation. Valid until the next update. */
+HELIO_API const float *helio_environment_cube(const helio_environment *environment);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

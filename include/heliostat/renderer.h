@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * renderer.h - a scene, a camera and an environment in, a picture out.
+ */
+#ifndef HELIOSTAT_RENDERER_H
+#define HELIOSTAT_RENDERER_H
+
+#include <heliostat/core.h>
+#include <heliostat/environment.h>
+#include <heliostat/image.h>
+#include <heliostat/sampling.h>
+#include <heliostat/scene.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum helio_background {
+    HELIO_BACKGROUND_DEFAULT = 0, /* ENVIRONMENT, or NONE over a shadow catcher */
+    HELIO_BACKGROUND_ENVIRONMENT, /* the map, filtered; alpha is 1 */
+    HELIO_BACKGROUND_NONE,        /* nothing; alpha is the coverage of object and plane, and over a shadow catcher
+                                     1 - the share of light that reaches it */
+} helio_background;
+
+typedef struct helio_renderer helio_renderer;
+
+typedef struct helio_renderer_desc {
+    helio_environment *environment; /* required */
+    const helio_scene *scene;       /* required */
+    uint32_t width, height;         /* default 1280 x 720; 1..16384 each */
+    uint32_t spp;                   /* light + BRDF samples per shading point; default 64; 1..2^20 */
+    uint32_t aa;                    /* camera samples per pixel, each with spp of its own; default 1; 1..4096.
+                                       1 looks through the pixel's centre, more are spread over the pixel. */
+    helio_strategy strategy;
+    helio_weighting weighting;
+    uint32_t pool_length; /* M; default 1024 */
+    float brdf_share;     /* default 0.5 */
+    bool no_beta;
+    bool no_decorrelation; /* all pixels read the same windows of the pools: shows bands */
+    bool no_visibility;    /* light passes through everything, the paper's setting; default: shadow rays */
+    helio_background background;
+    bool aovs; /* also fill albedo, normal, position and depth: means over the camera samples that
+                                       hit object or plane (a shadow catcher is not hit) */
+} helio_renderer_desc;
+
+typedef struct helio_frame_desc {
+    helio_camera camera; /* required */
+    uint32_t seed;
+    /* Called now and then on the calling thread with the part done, 0..1. false stops the frame: HELIO_OK is returned and
+     * each pixel holds the samples that it got so far (none: black, alpha 0). Default: none. */
+    bool (*progress)(void *user, float done);
+    void *user;
+} helio_frame_desc;
+
+typedef struct helio_frame_info {
+    double tables_ms, pools_ms, primary_ms, shade_ms; /* time in each stage, all passes; monotonic clock */
+    uint32_t passes;                                  /* how often the pools were redrawn */
+    uint64_t samples;                                 /* light + BRDF samples taken */
+    uint64_t samples_useful;                          /* above the horizon, with light, with a BRDF > 0 */
+    uint64_t rays;                                    /* shadow rays */
+    uint64_t points;                                  /* shading points: camera samples that hit something */
+    bool stopped;                                     /* progress said so */
+} helio_frame_info;
+
+/* Takes all memory. Makes its own tables and pools. */
+HELIO_API helio_status helio_renderer_create(helio_context *context, const helio_renderer_desc *desc,
+                                             helio_renderer **renderer);
+HELIO_API void helio_renderer_destroy(helio_renderer *renderer);
+
+/* Renders the environment's current frame: tables, then for each pass pools, camera rays and shading. The same seed gives
+ * the same bits on any number of threads. info may be NULL. */
+HELIO_API helio_status helio_renderer_render(helio_renderer *renderer, const helio_frame_desc *desc,
+                                             helio_frame_info *info);
+
+/* What the latest render made. Arrays are the renderer's, valid until its next render. */
+HELIO_API helio_picture helio_renderer_picture(const helio_renderer *renderer);
+
+/* How many passes a frame takes: about spp x aa / (M / 8). Each redraws the pools. */
+HELIO_API uint32_t helio_renderer_passes(const helio_renderer *renderer);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: MIT */
+#include "core/file.h"
+
+#include "core/context.h"
+#include "core/error.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static helio_status read_stream(helio_context *context, FILE *stream, const char *path, size_t max_bytes,
+                                unsigned char **bytes, size_t *size)
+{
+    struct stat status;
+    if (fstat(fileno(stream), &status) != 0)
+        return fail(HELIO_ERR_IO, "%s cannot be read: %s", path, strerror(errno));
+    if (!S_ISREG(status.st_mode))
+        return fail(HELIO_ERR_IO, "%s is not a file", path);
+    if ((uintmax_t)status.st_size > max_bytes)
+        return fail(HELIO_ERR_DATA, "%s is too large: %jd bytes, where %zu are allowed", path, (intmax_t)status.st_size,
+                    max_bytes);
+    size_t length = (size_t)status.st_size;
+    unsigned char *memory = context_allocate(context, length + 1, 1);
+    if (memory == NULL)
+        return fail(HELIO_ERR_MEMORY, "no memory to read %s (%zu bytes)", path, length);
+    if (fread(memory, 1, length, stream) != length) {
+        context_release(context, memory);
+        return fail(HELIO_ERR_IO, "%s cannot be read to its end", path);
+    }
+    *bytes = memory;
+    *size = length;
+    return HELIO_OK;
+}
+
+helio_status file_read(helio_context *context, const char *path, size_t max_bytes, unsigned char **bytes, size_t *size)
+{
+    /* Without O_NONBLOCK the opening of a named pipe could wait for ever. */
+    int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    FILE *stream = descriptor < 0 ? NULL : fdopen(descriptor, "rb");
+    if (stream == NULL) {
+        if (descriptor >= 0)
+            close(descriptor);
+        return fail(HELIO_ERR_IO, "%s cannot be opened: %s", path, strerror(errno));
+    }
+    helio_status status = read_stream(context, stream, path, max_bytes, bytes, size);
+    fclose(stream);
+    return status;
+}
+
+/* Opens a new file beside path, under a name that nobody else has. -1, with errno, if that cannot be done. */
+static int open_temporary(file_writer *writer)
+{
+    const char *slash = strrchr(writer->path, '/');
+    int directory_length = slash ? (int)(slash - writer->path) + 1 : 0;
+    for (unsigned attempt = 0; attempt < 1000; attempt++) {
+        int length = snprintf(writer->temporary, sizeof writer->temporary, "%.*s.heliostat-%ld-%u", directory_length,
+                              writer->path, (long)getpid(), attempt);
+        if (length < 0 || (size_t)length >= sizeof writer->temporary) {
+            errno = ENAMETOOLONG;
+            return -1;
+        }
+        int descriptor = open(writer->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (descriptor >= 0 || errno != EEXIST)
+            return descriptor;
+    }
+    return -1;
+}
+
+helio_status file_writer_open(file_writer *writer, const char *path)
+{
+    *writer = (file_writer){.path = path};
+    struct stat existing;
+    bool exists = stat(path, &existing) == 0;
+    if (!exists && errno != ENOENT) /* a name that is too long, say: found now, not when all work is done */
+        return fail(HELIO_ERR_IO, "%s cannot be written: %s", path, strerror(errno));
+    if (exists && !S_ISREG(existing.st_mode))
+        return fail(HELIO_ERR_IO, "%s is %s; name a file to write", path,
+                    S_ISDIR(existing.st_mode) ? "a directory" : "a device or pipe, which cannot be replaced");
+    int descriptor = open_temporary(writer);
+    if (descriptor < 0) {
+        writer->temporary[0] = 0;
+        return fail(HELIO_ERR_IO, "%s cannot be written: %s", path, strerror(errno));
+    }
+    writer->stream = fdopen(descriptor, "w+b");
+    if (writer->stream == NULL) {
+        close(descriptor);
+        file_writer_abandon(writer);
+        return fail(HELIO_ERR_IO, "%s cannot be written: %s", path, strerror(errno));
+    }
+    return HELIO_OK;
+}
+
+helio_status file_writer_commit(file_writer *writer)
+{
+    errno = 0;
+    bool bad = ferror(writer->stream) != 0;
+    bad |= fclose(writer->stream) != 0;
+    writer->stream = NULL;
+    if (!bad && rename(writer->temporary, writer->path) == 0) {
+        writer->temporary[0] = 0;
+        return HELIO_OK;
+    }
+    const char *reason = errno ? strerror(errno) : "the disk may be full";
+    helio_status status = fail(HELIO_ERR_IO, "%s cannot be written: %s", writer->path, reason);
+    file_writer_abandon(writer);
+    return status;
+}
+
+void file_writer_abandon(file_writer *writer)
+{
+    if (writer->stream != NULL)
+        fclose(writer->stream);
+    if (writer->temporary[0] != 0)
+        unlink(writer->temporary);
+    writer->stream = NULL;
+    writer->temporary[0] = 0;
+}
+
+bool file_has_extension(const char *path, const char *extension)
+{
+    size_t path_length = strlen(path), length = strlen(extension);
+    return path_length > length && path[path_length - length - 1] == '.' &&
+           strcasecmp(path + path_length - length, extension) == 0;
+}

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: MIT
+ * random.h - hashes and low-discrepancy points; integers throughout, so that every machine draws the same. */
+#ifndef HELIOSTAT_SRC_RANDOM_H
+#define HELIOSTAT_SRC_RANDOM_H
+
+#include <stdint.h>
+
+/* A bijection of 32-bit integers in which every input bit changes every output bit with a probability near one half
+ * (constants: C. Wellons, "hash-prospector", bias 0.17). */
+static inline uint32_t hash(uint32_t x)
+{
+    x ^= x >> 16;
+    x *= 0x7feb352du;
+    x ^= x >> 15;
+    x *= 0x846ca68bu;
+    x ^= x >> 16;
+    return x;
+}
+
+static inline uint32_t hash_combine(uint32_t a, uint32_t b)
+{
+    return hash(a ^ (hash(b + 0x9e3779b9u) * 0x85ebca6bu + 0xc2b2ae35u));
+}
+
+/* The upper 24 bits as a float in [0, 1): never 1, which a plain division could round to. */
+static inline float unit_float(uint32_t x)
+{
+    return (float)(x >> 8) * 0x1p-24f;
+}
+
+static inline uint32_t reverse_bits(uint32_t x)
+{
+    x = (x >> 16) | (x << 16);
+    x = ((x & 0x00ff00ffu) << 8) | ((x >> 8) & 0x00ff00ffu);
+    x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
+    x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
+    return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
+}
+
+/* Coordinate `dimension` (0, 1 or 2) of point `index` of Sobol's sequence, as a fraction of 2^32. The first two
+ * dimensions are a (0,2)-sequence: every aligned block of 2^k points has one point in each elementary interval. */
+static inline uint32_t sobol(uint32_t index, uint32_t dimension)
+{
+    if (dimension == 0)
+        return reverse_bits(index);
+    uint32_t result = 0;
+    if (dimension == 1) {
+        for (uint32_t v = 0x80000000u; index != 0; index >>= 1, v ^= v >> 1)
+            if (index & 1u)
+                result ^= v;
+        return result;
+    }
+    /* Direction numbers of the primitive polynomial x^2 + x + 1 with m = 1, 3. */
+    uint32_t v = 0x80000000u, next = 0xc0000000u;
+    for (; index != 0; index >>= 1) {
+        if (index & 1u)
+            result ^= v;
+        uint32_t after = next ^ v ^ (v >> 2);
+        v = next;
+        next = after;
+    }
+    return result;
+}
+
+/* Owen's nested uniform scrambling of a fraction of 2^32, by hash: each bit is flipped by a hash of the bits above it, so
+ * that nets stay nets and each point becomes uniform (Laine and Karras 2011, Burley 2020; constants by N. Vegdahl 2021). */
+static inline uint32_t owen_scramble(uint32_t x, uint32_t seed)
+{
+    x = reverse_bits(x);
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= (seed >> 16) | 1u;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return reverse_bits(x);
+}
+
+/* One coordinate of the Owen-scrambled sequence that belongs to seed. */
+static inline uint32_t scrambled_sobol(uint32_t index, uint32_t dimension, uint32_t seed)
+{
+    return owen_scramble(sobol(index, dimension), hash_combine(seed, dimension));
+}
+
+#endif

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: MIT
+ * cube.h - the geometry of the cube: directions, face coordinates, texels, solid angles. */
+#ifndef HELIOSTAT_SRC_CUBE_H
+#define HELIOSTAT_SRC_CUBE_H
+
+#include "core/vector.h"
+
+#include <stdint.h>
+
+enum { CUBE_FACES = 6, CUBE_MAX_SIZE = 4096 };
+
+/* A direction on a face is axis + u * right + v * down, u and v in [-1, 1]. */
+typedef struct cube_face {
+    vec3 axis, right, down;
+} cube_face;
+
+/* In the order +X -X +Y -Y +Z -Z, oriented as in the cube map tables of Vulkan and OpenGL. */
+extern const cube_face cube_faces[CUBE_FACES];
+
+typedef struct cube_position {
+    uint32_t face;
+    float u, v;
+} cube_position;
+
+/* Where a direction (not 0, any length) meets the cube. On edges X wins over Y over Z. */
+static inline cube_position cube_project(vec3 d)
+{
+    float x = fabsf(d.x), y = fabsf(d.y), z = fabsf(d.z);
+    if (x >= y && x >= z)
+        return d.x >= 0.0f ? (cube_position){0, -d.z / x, -d.y / x} : (cube_position){1, d.z / x, -d.y / x};
+    if (y >= z)
+        return d.y >= 0.0f ? (cube_position){2, d.x / y, d.z / y} : (cube_position){3, d.x / y, -d.z / y};
+    return d.z >= 0.0f ? (cube_position){4, d.x / z, -d.y / z} : (cube_position){5, -d.x / z, -d.y / z};
+}
+
+/* Unit vector towards a point of a face. */
+static inline vec3 cube_direction(uint32_t face, float u, float v)
+{
+    const cube_face *f = &cube_faces[face];
+    return scale(add_scaled(add_scaled(f->axis, f->right, u), f->down, v), 1.0f / sqrtf(1.0f + u * u + v * v));
+}
+
+/* Row or column of a face coordinate. Both ends belong to the face, so u = 1 is in the last texel. */
+static inline uint32_t cube_texel(float coordinate, uint32_t size)
+{
+    float position = (coordinate + 1.0f) * 0.5f * (float)size;
+    if (!(position > 0.0f)) /* also NaN */
+        return 0;
+    return position < (float)size ? (uint32_t)position : size - 1;
+}
+
+/* Solid angle, sr, of the part of a face between its centre and the corner (u, v), with the sign of u v. */
+double cube_corner_solid_angle(double u, double v);
+
+/* Exact solid angle, sr, of a rectangle of a face. */
+double cube_solid_angle(double u0, double u1, double v0, double v1);
+
+#endif

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: MIT
+ * environment.h - the environment from inside: what resampling, tables and renderer need of it. */
+#ifndef HELIOSTAT_SRC_ENVIRONMENT_H
+#define HELIOSTAT_SRC_ENVIRONMENT_H
+
+#include "core/vector.h"
+#include "env/cube.h"
+
+#include <heliostat/environment.h>
+
+typedef struct resampler resampler;
+
+struct helio_environment {
+    helio_context *context;
+    uint32_t size; /* R */
+    uint32_t width, height;
+    helio_layout layout;
+    uint64_t frame;
+    float *clean;       /* [height][width][3]: the map after hygiene */
+    float *cube;        /* [6][R][R][3] */
+    float *solid_angle; /* [R][R], sr, the same for all faces */
+    resampler *resampler;
+    uint64_t (*row_faults)[3]; /* [height]: pixels of a row with NaN, infinite, negative channels */
+    vec3 map_axes[3]; /* world axes X Y Z as seen in the map's space: rows of an orthogonal matrix's transpose */
+    float intensity;
+};
+
+/* World directions to the map's space and back. The matrix is orthogonal, perhaps with a reflection. */
+static inline vec3 environment_to_map(const helio_environment *environment, vec3 d)
+{
+    const vec3 *axes = environment->map_axes;
+    return add_scaled(add_scaled(scale(axes[0], d.x), axes[1], d.y), axes[2], d.z);
+}
+
+static inline vec3 environment_to_world(const helio_environment *environment, vec3 d)
+{
+    const vec3 *axes = environment->map_axes;
+    return (vec3){dot(axes[0], d), dot(axes[1], d), dot(axes[2], d)};
+}
+
+static inline const float *environment_texel(const helio_environment *environment, uint32_t face, uint32_t row,
+                                             uint32_t column)
+{
+    size_t size = environment->size;
+    return environment->cube + ((face * size + row) * size + column) * 3;
+}
+
+#endif

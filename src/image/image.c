@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: MIT */
+#include "image/image.h"
+
+#include "core/context.h"
+#include "core/error.h"
+#include "core/file.h"
+
+#include <float.h>
+#include <inttypes.h>
+#include <string.h>
+
+#define FILE_SIZE_LIMIT (UINT64_C(4) << 30)    /* bytes */
+#define DEFAULT_MAX_PIXELS (UINT64_C(1) << 28) /* 3 GiB of RGB */
+
+typedef struct image_kind {
+    const char *name;
+    const char *magic;
+    size_t magic_length;
+    helio_status (*read)(const image_file *file, helio_image **image); /* NULL: not built in */
+} image_kind;
+
+static const image_kind KINDS[] = {
+#if HELIO_WITH_OPENEXR
+    {"OpenEXR", "\x76\x2f\x31\x01", 4, exr_read},
+#else
+    {"OpenEXR", "\x76\x2f\x31\x01", 4, NULL},
+#endif
+    {"Radiance HDR", "#?", 2, radiance_read},     {"PFM", "PF", 2, pfm_read}, {"PFM", "Pf", 2, pfm_read},
+#if HELIO_WITH_PNG
+    {"PNG", "\x89PNG\r\n\x1a\n", 8, png_read},
+#else
+    {"PNG", "\x89PNG\r\n\x1a\n", 8, NULL},
+#endif
+#if HELIO_WITH_JPEG
+    {"JPEG", "\xff\xd8\xff", 3, jpeg_read},
+#else
+    {"JPEG", "\xff\xd8\xff", 3, NULL},
+#endif
+};
+
+static const image_kind *find_kind(const unsigned char *bytes, size_t size)
+{
+    for (size_t i = 0; i < sizeof KINDS / sizeof *KINDS; i++)
+        if (size >= KINDS[i].magic_length && memcmp(bytes, KINDS[i].magic, KINDS[i].magic_length) == 0)
+            return &KINDS[i];
+    return NULL;
+}
+
+static helio_status decode(const image_file *file, helio_image **image)
+{
+    if (file->size == 0)
+        return fail(HELIO_ERR_DATA, "%s is empty", file->path);
+    const image_kind *kind = find_kind(file->bytes, file->size);
+    if (kind == NULL)
+        return fail(HELIO_ERR_DATA,
+                    "%s is not a picture that can be read; give OpenEXR, Radiance HDR, PFM, PNG or JPEG", file->path);
+    if (kind->read == NULL)
+        return fail(HELIO_ERR_UNSUPPORTED, "%s is %s, which this build cannot read; build with it or convert the file",
+                    file->path, kind->name);
+    return kind->read(file, image);
+}
+
+helio_status helio_image_read(helio_context *context, const char *path, const helio_image_read_desc *desc,
+                              helio_image **image)
+{
+    if (image == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "helio_image_read needs a place for the image");
+    *image = NULL;
+    if (context == NULL || path == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "helio_image_read needs a context and a path");
+    image_file file = {.context = context, .path = path, .max_pixels = DEFAULT_MAX_PIXELS};
+    if (desc != NULL && desc->max_pixels != 0)
+        file.max_pixels = desc->max_pixels;
+
+    const size_t limit = FILE_SIZE_LIMIT < SIZE_MAX / 2 ? (size_t)FILE_SIZE_LIMIT : SIZE_MAX / 2;
+    unsigned char *bytes;
+    HELIO_TRY(file_read(context, path, limit, &bytes, &file.size));
+    file.bytes = bytes;
+    helio_status status = decode(&file, image);
+    context_release(context, bytes);
+    return status;
+}
+
+void helio_image_destroy(helio_context *context, helio_image *image)
+{
+    if (image == NULL)
+        return;
+    context_release(context, image->rgb);
+    context_release(context, image->alpha);
+    context_release(context, image);
+}
+
+helio_status image_check_size(const image_file *file, uint64_t width, uint64_t height, uint64_t least_bytes)
+{
+    if (width == 0 || height == 0)
+        return fail(HELIO_ERR_DATA, "%s has no pixels: its size is %" PRIu64 " x %" PRIu64, file->path, width, height);
+    if (width > IMAGE_EDGE_LIMIT || height > IMAGE_EDGE_LIMIT)
+        return fail(HELIO_ERR_DATA, "%s is too large: %" PRIu64 " x %" PRIu64 " pixels, where %d are allowed each way",
+                    file->path, width, height, IMAGE_EDGE_LIMIT);
+    if (width * height > file->max_pixels)
+        return fail(HELIO_ERR_DATA,
+                    "%s is too large: %" PRIu64 " x %" PRIu64 " pixels, where %" PRIu64 " in all are allowed",
+                    file->path, width, height, file->max_pixels);
+    if (file->size < least_bytes)
+        return fail(HELIO_ERR_DATA,
+                    "%s is truncated or damaged: its %zu bytes cannot hold the %" PRIu64 " x %" PRIu64
+                    " pixels that it claims",
+                    file->path, file->size, width, height);
+    return HELIO_OK;
+}
+
+helio_status image_create(const image_file *file, uint64_t width, uint64_t height, bool alpha, uint64_t least_bytes,
+                          helio_image **out)
+{
+    HELIO_TRY(image_check_size(file, width, height, least_bytes));
+    size_t pixels = (size_t)(width * height);
+    helio_image *image = context_allocate(file->context, 1, sizeof *image);
+    if (image == NULL)
+        return HELIO_ERR_MEMORY;
+    image->width = (uint32_t)width;
+    image->height = (uint32_t)height;
+    image->rgb = context_allocate(file->context, pixels, 3 * sizeof *image->rgb);
+    if (alpha)
+        image->alpha = context_allocate(file->context, pixels, sizeof *image->alpha);
+    if (image->rgb == NULL || (alpha && image->alpha == NULL)) {
+        helio_image_destroy(file->context, image);
+        return fail(HELIO_ERR_MEMORY, "no memory for the %" PRIu64 " x %" PRIu64 " pixels of %s", width, height,
+                    file->path);
+    }
+    *out = image;
+    return HELIO_OK;
+}
+
+void image_count_bad(helio_image *image)
+{
+    size_t pixels = (size_t)image->width * image->height;
+    image->bad_in_file = 0;
+    for (size_t i = 0; i < pixels; i++) {
+        const float *rgb = image->rgb + 3 * i;
+        bool good = true;
+        for (int c = 0; c < 3; c++)
+            good &= rgb[c] >= 0 && rgb[c] <= FLT_MAX; /* false for NaN too */
+        image->bad_in_file += !good;
+    }
+}
+
+void image_make_printable(char *text)
+{
+    for (; *text != 0; text++)
+        if (*text == '\t')
+            *text = ' ';
+        else if (*text < ' ' || *text > '~')
+            *text = '?';
+}

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT */
+#include "image/tonemap.h"
+
+#include "core/error.h"
+#include "core/vector.h"
+#include "image/colour.h"
+
+#include <string.h>
+
+static const char *const NAMES[] = {"clip", "reinhard"};
+enum { TONEMAP_COUNT = sizeof NAMES / sizeof *NAMES };
+
+const char *helio_tonemap_name(helio_tonemap tonemap)
+{
+    return (unsigned)tonemap < TONEMAP_COUNT ? NAMES[tonemap] : "unknown";
+}
+
+helio_status helio_tonemap_parse(const char *name, helio_tonemap *tonemap)
+{
+    if (name == NULL || tonemap == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "helio_tonemap_parse needs a name and a place for the tone map");
+    for (unsigned i = 0; i < TONEMAP_COUNT; i++)
+        if (strcmp(name, NAMES[i]) == 0) {
+            *tonemap = (helio_tonemap)i;
+            return HELIO_OK;
+        }
+    return fail(HELIO_ERR_ARGUMENT, "tone map \"%s\" is unknown; use clip or reinhard", name);
+}
+
+/* 0 for NaN. */
+static float clamp(float value, float greatest)
+{
+    return value > 0 ? (value < greatest ? value : greatest) : 0;
+}
+
+static unsigned char to_byte(float value)
+{
+    return (unsigned char)(clamp(value, 1) * 255 + 0.5f);
+}
+
+void tonemap_pixel(const float rgba[4], const helio_picture_write_desc *desc, unsigned char *pixel)
+{
+    const float much = 1e30f; /* a stand-in for infinity that can be divided */
+    float alpha = clamp(rgba[3], 1), factor = exp2f(desc->exposure), rgb[3];
+    for (int c = 0; c < 3; c++) {
+        float colour = rgba[c];
+        if (desc->alpha)
+            colour = alpha > 0 ? colour / alpha : 0;
+        rgb[c] = clamp(colour * factor, much);
+    }
+    float divisor = desc->tonemap == HELIO_TONEMAP_REINHARD ? 1 + luminance(rgb) : 1;
+    for (int c = 0; c < 3; c++)
+        pixel[c] = to_byte(srgb_encode(clamp(rgb[c] / divisor, 1)));
+    if (desc->alpha)
+        pixel[3] = to_byte(alpha);
+}

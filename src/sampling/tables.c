@@ -1,0 +1,297 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Fixed-point tables. Each row is scaled by a power of two that depends only on its largest weight, rounded to integers
+ * (at least 1 for a texel that is not black) and summed; the sums of the rows are scaled likewise into the marginal. Scaling
+ * by a power of two is exact and integer sums do not depend on their order, so equal cubes give equal bits everywhere. */
+#include "sampling/tables.h"
+
+#include "core/context.h"
+#include "core/error.h"
+#include "core/random.h"
+
+#include <string.h>
+
+/* A row of the table holds R integers below 2^summand_bits; their sum, rounding included, stays below 2^32. */
+static int summand_bits(uint32_t count)
+{
+    int bits = 31;
+    for (uint32_t power = 1; power < count; power *= 2)
+        bits--;
+    return bits;
+}
+
+/* ---- creation ---- */
+
+static const char *const weighting_names[] = {"solid-angle", "paper"};
+
+const char *helio_weighting_name(helio_weighting weighting)
+{
+    return weighting == HELIO_WEIGHTING_PAPER ? weighting_names[1] : weighting_names[0];
+}
+
+helio_status helio_weighting_parse(const char *name, helio_weighting *weighting)
+{
+    if (name == NULL || weighting == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "helio_weighting_parse needs a name and a place for the weighting");
+    for (int i = 0; i < 2; i++)
+        if (strcmp(name, weighting_names[i]) == 0) {
+            *weighting = (helio_weighting)i;
+            return HELIO_OK;
+        }
+    return fail(HELIO_ERR_ARGUMENT, "weighting '%s' is unknown; choose solid-angle or paper", name);
+}
+
+helio_status helio_tables_create(helio_environment *environment, helio_weighting weighting, helio_tables **out)
+{
+    if (out != NULL)
+        *out = NULL;
+    if (environment == NULL || out == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "helio_tables_create needs an environment and a place for the result");
+    if (weighting != HELIO_WEIGHTING_SOLID_ANGLE && weighting != HELIO_WEIGHTING_PAPER)
+        return fail(HELIO_ERR_ARGUMENT, "weighting %d is unknown; use a value of helio_weighting", (int)weighting);
+    helio_context *context = environment->context;
+    helio_tables *tables = context_allocate(context, 1, sizeof *tables);
+    if (tables == NULL)
+        return HELIO_ERR_MEMORY;
+    size_t size = environment->size;
+    tables->environment = environment;
+    tables->weighting = weighting;
+    tables->size = environment->size;
+    tables->rows = context_allocate(context, CUBE_FACES * size * (size + 1), sizeof *tables->rows);
+    tables->marginals = context_allocate(context, CUBE_FACES * (size + 1), sizeof *tables->marginals);
+    tables->row_sums = context_allocate(context, CUBE_FACES * size, sizeof *tables->row_sums);
+    tables->row_fluxes = tables->row_sums;
+    if (weighting == HELIO_WEIGHTING_PAPER)
+        tables->row_fluxes = context_allocate(context, CUBE_FACES * size, sizeof *tables->row_fluxes);
+    if (!tables->rows || !tables->marginals || !tables->row_sums || !tables->row_fluxes) {
+        helio_tables_destroy(tables);
+        return HELIO_ERR_MEMORY;
+    }
+    *out = tables;
+    return HELIO_OK;
+}
+
+void helio_tables_destroy(helio_tables *tables)
+{
+    if (tables == NULL)
+        return;
+    helio_context *context = tables->environment->context;
+    if (tables->row_fluxes != tables->row_sums)
+        context_release(context, tables->row_fluxes);
+    context_release(context, tables->row_sums);
+    context_release(context, tables->marginals);
+    context_release(context, tables->rows);
+    context_release(context, tables);
+}
+
+/* ---- update ---- */
+
+/* Luminance x relative solid angle (solid_angles NULL: luminance alone). Relative to 4 / K sr, the largest that a texel of
+ * a fine cube has, so that no product overflows. */
+static float texel_weight(const float rgb[3], const float *solid_angles, size_t column, float quarter_texels)
+{
+    float value = luminance(rgb);
+    return solid_angles ? value * (solid_angles[column] * quarter_texels) : value;
+}
+
+static bool is_lit(const float rgb[3])
+{
+    return rgb[0] > 0.0f || rgb[1] > 0.0f || rgb[2] > 0.0f;
+}
+
+/* The exponent e for which the largest weight x 2^e is below 2^bits, and nearly reaches it. At most 126, so that 2^e is a
+ * normal float and a weight that a machine might flush to zero comes out as 0 or 1 in either case. */
+static int row_exponent(float largest, int bits)
+{
+    int exponent = 0;
+    frexpf(largest, &exponent);
+    return bits - exponent < 126 ? bits - exponent : 126;
+}
+
+/* Prefix sums of one row's weights. sums: [R + 1], or NULL if only the total is wanted. */
+static row_sum sum_row(const float *rgb, const float *solid_angles, uint32_t size, uint32_t *sums)
+{
+    float largest = 0.0f, quarter_texels = 0.25f * (float)size * (float)size;
+    for (size_t i = 0; i < size; i++)
+        largest = fmaxf(largest, texel_weight(rgb + i * 3, solid_angles, i, quarter_texels));
+    int exponent = row_exponent(largest, summand_bits(size));
+    float factor = ldexpf(1.0f, exponent);
+    uint32_t sum = 0;
+    for (size_t i = 0; i < size; i++) {
+        if (sums)
+            sums[i] = sum;
+        float weight = rintf(texel_weight(rgb + i * 3, solid_angles, i, quarter_texels) * factor);
+        if (is_lit(rgb + i * 3))
+            sum += weight > 1.0f ? (uint32_t)weight : 1u;
+    }
+    if (sums)
+        sums[size] = sum;
+    return (row_sum){sum, exponent};
+}
+
+static void build_row(void *data, size_t index)
+{
+    helio_tables *tables = data;
+    const helio_environment *environment = tables->environment;
+    size_t size = tables->size, row = index % size;
+    const float *rgb = environment->cube + index * size * 3;
+    const float *solid_angles = environment->solid_angle + row * size;
+    bool paper = tables->weighting == HELIO_WEIGHTING_PAPER;
+    tables->row_sums[index] =
+        sum_row(rgb, paper ? NULL : solid_angles, tables->size, tables->rows + index * (size + 1));
+    if (paper)
+        tables->row_fluxes[index] = sum_row(rgb, solid_angles, tables->size, NULL);
+}
+
+/* Position of the highest bit of sum x 2^-exponent. */
+static int top_bit(row_sum row)
+{
+    int bit = -1;
+    for (uint32_t sum = row.sum; sum != 0; sum >>= 1)
+        bit++;
+    return bit - row.exponent;
+}
+
+/* The common exponent for which the largest of the sums is below 2^bits. */
+static int common_exponent(const row_sum *rows, uint32_t count, int bits)
+{
+    int highest = INT32_MIN;
+    for (uint32_t i = 0; i < count; i++)
+        if (rows[i].sum != 0 && top_bit(rows[i]) > highest)
+            highest = top_bit(rows[i]);
+    return highest == INT32_MIN ? 0 : bits - 1 - highest;
+}
+
+/* sum x 2^-exponent x 2^to, rounded to the nearest integer, at least 1 unless the sum is 0. */
+static uint32_t rescale(row_sum row, int to)
+{
+    int shift = row.exponent - to; /* to the right */
+    if (row.sum == 0)
+        return 0;
+    if (shift <= 0)
+        return row.sum << -shift;
+    if (shift > 32)
+        return 1;
+    uint64_t rounded = ((uint64_t)row.sum + ((uint64_t)1 << (shift - 1))) >> shift;
+    return rounded > 1 ? (uint32_t)rounded : 1;
+}
+
+/* Prefix sums over rows. sums: [count + 1], or NULL if only the total is wanted. */
+static row_sum sum_rows(const row_sum *rows, uint32_t count, uint32_t *sums)
+{
+    int exponent = common_exponent(rows, count, summand_bits(count));
+    uint32_t sum = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (sums)
+            sums[i] = sum;
+        sum += rescale(rows[i], exponent);
+    }
+    if (sums)
+        sums[count] = sum;
+    return (row_sum){sum, exponent};
+}
+
+helio_status helio_tables_update(helio_tables *tables)
+{
+    if (tables == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "helio_tables_update needs tables");
+    if (tables->environment->frame == 0)
+        return fail(HELIO_ERR_ARGUMENT, "the environment holds no map yet; call helio_environment_update first");
+    size_t size = tables->size;
+    context_parallel_for(tables->environment->context, CUBE_FACES * size, build_row, tables);
+    row_sum faces[CUBE_FACES];
+    for (size_t face = 0; face < CUBE_FACES; face++) {
+        faces[face] = sum_rows(tables->row_sums + face * size, tables->size, tables->marginals + face * (size + 1));
+        row_sum flux = tables->weighting == HELIO_WEIGHTING_PAPER
+                           ? sum_rows(tables->row_fluxes + face * size, tables->size, NULL)
+                           : faces[face];
+        tables->flux[face] = ldexp((double)flux.sum, -flux.exponent) * 4.0 / ((double)size * (double)size);
+    }
+    sum_rows(faces, CUBE_FACES, tables->faces);
+    tables->frame = tables->environment->frame;
+    return HELIO_OK;
+}
+
+/* ---- drawing and density ---- */
+
+uint32_t tables_invert(const uint32_t *sums, uint32_t count, uint32_t x, uint32_t *fraction)
+{
+    uint64_t target = (uint64_t)x * sums[count]; /* in units of 2^-32 */
+    uint32_t whole = (uint32_t)(target >> 32), low = 0, high = count;
+    while (high - low > 1) { /* sums[low] <= whole < sums[high] */
+        uint32_t middle = low + (high - low) / 2;
+        if (sums[middle] <= whole)
+            low = middle;
+        else
+            high = middle;
+    }
+    *fraction = (uint32_t)((target - ((uint64_t)sums[low] << 32)) / (sums[low + 1] - sums[low]));
+    return low;
+}
+
+bool tables_sample(const helio_tables *tables, uint32_t face, uint32_t x, uint32_t y, helio_table_sample *sample)
+{
+    face_table table = tables_face(tables, face);
+    uint32_t size = table.size, row_fraction, column_fraction;
+    if (table.marginal[size] == 0)
+        return false;
+    uint32_t row = tables_invert(table.marginal, size, y, &row_fraction);
+    uint32_t column = tables_invert(table.rows + (size_t)row * (size + 1), size, x, &column_fraction);
+    float u = ((float)(2 * column) + 2.0f * unit_float(column_fraction)) / (float)size - 1.0f;
+    float v = ((float)(2 * row) + 2.0f * unit_float(row_fraction)) / (float)size - 1.0f;
+    vec3_to(cube_direction(face, u, v), sample->direction);
+    const float *rgb = environment_texel(tables->environment, face, row, column);
+    for (int c = 0; c < 3; c++)
+        sample->radiance[c] = rgb[c];
+    sample->density = face_table_density(&table, row, column, u, v);
+    sample->row = row;
+    sample->column = column;
+    return true;
+}
+
+bool tables_sample_whole(const helio_tables *tables, uint32_t x, uint32_t y, helio_table_sample *sample)
+{
+    if (tables->faces[CUBE_FACES] == 0)
+        return false;
+    uint32_t rest, face = tables_invert(tables->faces, CUBE_FACES, y, &rest);
+    if (!tables_sample(tables, face, x, rest, sample))
+        return false;
+    sample->density *= tables_face_probability(tables, face);
+    return true;
+}
+
+static uint32_t fraction_from_unit(float x)
+{
+    return x > 0.0f ? (x < 1.0f ? (uint32_t)((double)x * 0x1p32) : UINT32_MAX) : 0u;
+}
+
+bool helio_tables_sample(const helio_tables *tables, uint32_t face, float u, float v, helio_table_sample *sample)
+{
+    return face < CUBE_FACES && tables_sample(tables, face, fraction_from_unit(u), fraction_from_unit(v), sample);
+}
+
+float helio_tables_density(const helio_tables *tables, const float direction[3], uint32_t *face)
+{
+    cube_position at = cube_project(vec3_from(direction));
+    face_table table = tables_face(tables, at.face);
+    if (face != NULL)
+        *face = at.face;
+    return face_table_density(&table, cube_texel(at.v, table.size), cube_texel(at.u, table.size), at.u, at.v);
+}
+
+uint64_t helio_tables_frame(const helio_tables *tables)
+{
+    return tables->frame;
+}
+
+void helio_tables_flux(const helio_tables *tables, double flux[6])
+{
+    for (int face = 0; face < CUBE_FACES; face++)
+        flux[face] = tables->flux[face];
+}
+
+helio_table_view helio_tables_view(const helio_tables *tables, uint32_t face)
+{
+    face_table table = tables_face(tables, face < CUBE_FACES ? face : 0);
+    return (helio_table_view){.size = table.size, .rows = table.rows, .marginal = table.marginal};
+}

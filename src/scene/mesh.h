@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: MIT
+ * mesh.h - triangles of a mesh, and what an importer hands to helio_mesh_create(). */
+#ifndef HELIOSTAT_SRC_MESH_H
+#define HELIOSTAT_SRC_MESH_H
+
+#include "core/vector.h"
+
+#include <heliostat/scene.h>
+
+/* Vertices and triangles of one mesh stay below 2^31, so that three times as many fit in 64-bit sizes and byte offsets
+ * of one array in what ray tracers take. */
+#define MESH_MAX_ELEMENTS 0x7fffffffu
+
+/* Coordinates beyond this are refused: products of three of them, which ray tracers form, must fit in a float. It is
+ * 25 times the way to the moon. */
+#define MESH_MAX_COORDINATE 1e10f
+
+/* Unit normal of the counter-clockwise side. False for triangles without area: repeated or collinear corners. */
+bool mesh_triangle_normal(const helio_mesh *mesh, uint32_t triangle, vec3 *normal);
+
+/* Flat arrays, all memory of the context: the form in which an importer, in whatever process it runs, returns a file. */
+typedef struct mesh_arrays {
+    uint32_t vertex_count, triangle_count, material_count;
+    float *positions;             /* [vertex_count][3] */
+    float *normals;               /* [vertex_count][3], zero where the file has none; NULL if it has none at all */
+    uint32_t *triangles;          /* [triangle_count][3] */
+    uint32_t *triangle_materials; /* [triangle_count], or NULL if material_count is 0 */
+    helio_material *materials;    /* [material_count], or NULL */
+} mesh_arrays;
+
+/* Reads a file by assimp; in a build without it these two do not exist. On failure arrays holds nothing. */
+helio_status mesh_import(helio_context *context, const char *path, mesh_arrays *arrays);
+void mesh_arrays_release(helio_context *context, mesh_arrays *arrays);
+
+#endif

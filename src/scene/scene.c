@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: MIT */
+#include "scene/scene.h"
+
+#include "core/context.h"
+#include "core/error.h"
+#include "scene/material.h"
+#include "scene/mesh.h"
+
+#include <float.h>
+#include <string.h>
+
+/* Hits of the ground beyond this, within a hair of the horizon, count as misses: their squares would not fit a float. */
+#define GROUND_REACH 1e15f
+
+/* Shadow rays start this many roundings above the surface; see offset_origin(). With 2 the tests find spheres that shade
+ * themselves, with 4 they find none. */
+#define OFFSET_ROUNDINGS 16.0f
+
+static const char *const ground_names[] = {"none", "plane", "shadow"};
+
+const char *helio_ground_name(helio_ground ground)
+{
+    return ground >= HELIO_GROUND_NONE && ground <= HELIO_GROUND_SHADOW ? ground_names[ground] : "unknown ground";
+}
+
+helio_status helio_ground_parse(const char *name, helio_ground *ground)
+{
+    if (name == NULL || ground == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "helio_ground_parse needs a name and a place for the ground");
+    for (int i = HELIO_GROUND_NONE; i <= HELIO_GROUND_SHADOW; i++)
+        if (strcmp(name, ground_names[i]) == 0) {
+            *ground = (helio_ground)i;
+            return HELIO_OK;
+        }
+    return fail(HELIO_ERR_ARGUMENT, "ground \"%.200s\" is unknown; use none, plane or shadow", name);
+}
+
+/* ---- life ---------------------------------------------------------------------------- */
+
+static helio_status check_desc(const helio_scene_desc *desc)
+{
+    if (desc->mesh == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "helio_scene_desc has no mesh");
+    if (desc->ground < HELIO_GROUND_NONE || desc->ground > HELIO_GROUND_SHADOW)
+        return fail(HELIO_ERR_ARGUMENT, "ground %d is unknown; use a helio_ground", (int)desc->ground);
+    return desc->material ? helio_material_check(desc->material) : HELIO_OK;
+}
+
+static void measure(helio_scene *scene)
+{
+    const helio_mesh *mesh = scene->mesh;
+    for (int axis = 0; axis < 3; axis++) {
+        double low = (double)mesh->bounds[0][axis], high = (double)mesh->bounds[1][axis];
+        scene->extent = fmaxf(scene->extent, (float)(high - low));
+        scene->centre[axis] = 0.5 * (low + high);
+        scene->radius_squared += 0.25 * (high - low) * (high - low);
+    }
+    scene->ground_height = mesh->bounds[0][1];
+}
+
+helio_status helio_scene_create(helio_context *context, const helio_scene_desc *desc, helio_scene **out)
+{
+    if (out == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "helio_scene_create needs a place for the scene");
+    *out = NULL;
+    if (context == NULL || desc == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "helio_scene_create needs a context and a desc");
+    HELIO_TRY(check_desc(desc));
+    helio_scene *scene = context_allocate(context, 1, sizeof *scene);
+    if (scene == NULL)
+        return HELIO_ERR_MEMORY;
+    scene->context = context;
+    scene->mesh = desc->mesh;
+    scene->material = desc->material ? *desc->material : material_default();
+    scene->own_materials = desc->material == NULL && desc->mesh->material_count != 0;
+    scene->ground = desc->ground;
+    scene->ground_material = (helio_material){.kind = HELIO_MATERIAL_DIFFUSE, .diffuse = {0.5f, 0.5f, 0.5f}};
+    measure(scene);
+    helio_status status = rays_create(context, desc->mesh, &scene->rays);
+    if (status != HELIO_OK) {
+        helio_scene_destroy(scene);
+        return status;
+    }
+    *out = scene;
+    return HELIO_OK;
+}
+
+void helio_scene_destroy(helio_scene *scene)
+{
+    if (scene == NULL)
+        return;
+    rays_destroy(scene->rays);
+    context_release(scene->context, scene);
+}
+
+/* ---- what a ray meets ------------------------------------------------------------------ */
+
+static vec3 interpolate(const float *values, const uint32_t corners[3], const rays_hit *hit)
+{
+    vec3 a = vec3_from(values + 3 * (size_t)corners[0]);
+    vec3 b = vec3_from(values + 3 * (size_t)corners[1]);
+    vec3 c = vec3_from(values + 3 * (size_t)corners[2]);
+    return add_scaled(add_scaled(scale(a, 1.0f - hit->u - hit->v), b, hit->u), c, hit->v);
+}
+
+static bool intersect_mesh(const helio_scene *scene, vec3 origin, vec3 direction, scene_hit *hit)
+{
+    const helio_mesh *mesh = scene->mesh;
+    rays_hit found;
+    vec3 face;
+    if (!rays_intersect(scene->rays, origin, direction, &found) || !mesh_triangle_normal(mesh, found.triangle, &face))
+        return false;
+    const uint32_t *corners = mesh->triangles + 3 * (size_t)found.triangle;
+    if (dot(face, direction) > 0.0f)
+        face = scale(face, -1.0f);
+    vec3 smooth = interpolate(mesh->normals, corners, &found);
+    float size = length(smooth);
+    smooth = size > 1e-6f ? scale(smooth, 1.0f / size) : face;
+    if (dot(smooth, face) < 0.0f)
+        smooth = scale(smooth, -1.0f);
+    *hit = (scene_hit){
+        .distance = found.distance,
+        .position = interpolate(mesh->positions, corners, &found), /* nearer to the surface than along the ray */
+        .normal = smooth,
+        .geometric_normal = face,
+        .material =
+            scene->own_materials ? &mesh->materials[mesh->triangle_materials[found.triangle]] : &scene->material,
+    };
+    return true;
+}
+
+/* Only asked for rays that do cross the plane's height, or run beside it. */
+static bool intersect_ground(const helio_scene *scene, vec3 origin, vec3 direction, scene_hit *hit)
+{
+    float distance = (scene->ground_height - origin.y) / direction.y;
+    if (!(distance >= 0.0f && distance < GROUND_REACH))
+        return false;
+    vec3 position = add_scaled(origin, direction, distance);
+    position.y = scene->ground_height;
+    vec3 normal = {0.0f, direction.y < 0.0f ? 1.0f : -1.0f, 0.0f};
+    *hit = (scene_hit){
+        .distance = distance,
+        .position = position,
+        .normal = normal,
+        .geometric_normal = normal,
+        .material = &scene->ground_material,
+        .is_ground = true,
+    };
+    return true;
+}
+
+bool scene_intersect(const helio_scene *scene, vec3 origin, vec3 direction, scene_hit *hit)
+{
+    if (scene->ground == HELIO_GROUND_NONE)
+        return intersect_mesh(scene, origin, direction, hit);
+    /* The whole mesh stands on the plane. So from below the plane comes first, and from above the mesh does, however close
+     * they are: no rounding can mix them up. */
+    if (origin.y < scene->ground_height)
+        return direction.y > 0.0f && intersect_ground(scene, origin, direction, hit);
+    return intersect_mesh(scene, origin, direction, hit) ||
+           (direction.y < 0.0f && intersect_ground(scene, origin, direction, hit));
+}
+
+/* ---- shadows --------------------------------------------------------------------------- */
+
+/* Moves a point off its surface, so that the surface does not shade itself. What was computed lies off the true surface
+ * by the roundings of its interpolation, a few for each coordinate and in proportion to the corners' coordinates, which are
+ * at most the point's own plus the mesh's extent; the intersection with a neighbouring triangle adds some in proportion to
+ * the extent. The offset is the length of this box of errors along the normal, with a margin: it follows the size
+ * of the mesh and its distance from the origin, and is no larger than it must. */
+static vec3 offset_origin(const helio_scene *scene, vec3 position, vec3 normal)
+{
+    float rounding = OFFSET_ROUNDINGS * 0.5f * FLT_EPSILON;
+    float error = fabsf(normal.x) * (fabsf(position.x) + scene->extent) +
+                  fabsf(normal.y) * (fabsf(position.y) + scene->extent) +
+                  fabsf(normal.z) * (fabsf(position.z) + scene->extent);
+    return add_scaled(position, normal, rounding * error);
+}
+
+/* Does the ray stay clear of the sphere around the mesh? Most rays from the ground do. From FAR radii away all do: the
+ * mesh is smaller than the roundings of a direction there, and a ray tracer would search all of it for nothing. */
+static bool passes_by(const helio_scene *scene, vec3 origin, vec3 direction)
+{
+    const double FAR = 1e7;
+    double x = scene->centre[0] - (double)origin.x, dx = (double)direction.x;
+    double y = scene->centre[1] - (double)origin.y, dy = (double)direction.y;
+    double z = scene->centre[2] - (double)origin.z, dz = (double)direction.z;
+    double squared = x * x + y * y + z * z, along = x * dx + y * dy + z * dz;
+    if (squared <= scene->radius_squared)
+        return false;
+    if (along <= 0.0 || squared > FAR * FAR * scene->radius_squared)
+        return true;
+    return squared - along * along / (dx * dx + dy * dy + dz * dz) > 1.001 * scene->radius_squared;
+}
+
+bool scene_occluded(const helio_scene *scene, vec3 position, vec3 geometric_normal, vec3 direction)
+{
+    if (dot(geometric_normal, direction) <= 0.0f)
+        return true;
+    if (scene->ground != HELIO_GROUND_NONE) {
+        /* Seen points lie on the plane's underside, where only open space is left, or above it, where it hides all
+         * light from below. Heights are not compared: the lowest points of the mesh are on the plane. */
+        bool underside = geometric_normal.y == -1.0f && position.y == scene->ground_height;
+        if (direction.y < 0.0f)
+            return !underside;
+    }
+    if (passes_by(scene, position, direction))
+        return false;
+    return rays_occluded(scene->rays, offset_origin(scene, position, geometric_normal), direction);
+}

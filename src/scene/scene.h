@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: MIT
+ * scene.h - what a ray meets: the mesh, the ground, or nothing. */
+#ifndef HELIOSTAT_SRC_SCENE_H
+#define HELIOSTAT_SRC_SCENE_H
+
+#include "core/vector.h"
+#include "cpu/rays.h"
+
+#include <heliostat/scene.h>
+
+struct helio_scene {
+    helio_context *context;
+    const helio_mesh *mesh;
+    rays *rays;
+    helio_material material; /* of triangles, unless the mesh's own materials are used */
+    bool own_materials;      /* use those of the mesh */
+    helio_ground ground;
+    helio_material ground_material;
+    float ground_height; /* y of the plane: the mesh's lowest point */
+    float extent;        /* longest side of the mesh's bounds */
+    double centre[3];    /* of the sphere around the bounds */
+    double radius_squared;
+};
+
+typedef struct scene_hit {
+    float distance;
+    vec3 position;
+    vec3 normal;           /* for shading, interpolated; in the hemisphere of geometric_normal */
+    vec3 geometric_normal; /* of the surface itself, turned towards the ray's origin */
+    const helio_material *material;
+    bool is_ground;
+} scene_hit;
+
+/* What a ray meets first, and whether it meets anything; direction has unit length. The ground is seen from both sides. */
+bool scene_intersect(const helio_scene *scene, vec3 origin, vec3 direction, scene_hit *hit);
+
+/* Is the light from this direction, of unit length, kept from a point that scene_intersect() found? Light from behind
+ * the surface is. */
+bool scene_occluded(const helio_scene *scene, vec3 position, vec3 geometric_normal, vec3 direction);
+
+#endif

@@ -1,0 +1,56 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Installs into a fresh folder, builds the example against what was installed, through CMake and through pkg-config, and
+# runs it. What must not be passed on (the dragon) must not have been installed.
+#
+# usage: check_install.sh SOURCE-FOLDER BUILD-FOLDER C-COMPILER [FLAGS], FLAGS as the library was compiled with
+set -eu
+source=$1
+build=$2
+cc=$3
+flags=${4-}
+
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+prefix=$folder/prefix
+
+fail() {
+    echo "$1" >&2
+    exit 1
+}
+
+# Every line is a surface and its radiance; the upward one, in the sun, is brighter than the one in the shade.
+run_example() { # program
+    "$1" >"$folder/output" || fail "$1 failed"
+    cat "$folder/output"
+    awk '!/: [0-9.]+ [0-9.]+ [0-9.]+$/ { bad = 1 }
+         NR == 1 { lit = $(NF - 2) }
+         NR == 2 { shaded = $(NF - 2) }
+         END { exit bad || NR != 4 || lit <= 2 * shaded || shaded <= 0 }' "$folder/output" \
+        || fail "$1 printed something else than four lit surfaces"
+}
+
+cmake --install "$build" --prefix "$prefix" >"$folder/log" || { cat "$folder/log"; fail 'installing failed'; }
+(cd "$prefix" && find . -type f | sort)
+[ -z "$(find "$prefix" -iname '*dragon*')" ] || fail 'the dragon was installed'
+[ -n "$(find "$prefix/share/heliostat" -name 'LICENSE-*')" ] || fail 'the licence of the environment map is missing'
+
+echo '-- the example through CMake'
+cmake -S "$source/examples" -B "$folder/example" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_C_COMPILER="$cc" \
+    -DCMAKE_C_FLAGS="$flags" >"$folder/log" || { cat "$folder/log"; fail 'configuring the example failed'; }
+cmake --build "$folder/example" >"$folder/log" || { cat "$folder/log"; fail 'building the example failed'; }
+run_example "$folder/example/estimate"
+
+echo '-- the example through pkg-config'
+PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name heliostat.pc)")
+export PKG_CONFIG_PATH
+# shellcheck disable=SC2046,SC2086 # words on purpose
+"$cc" $flags "$source/examples/estimate.c" -o "$folder/estimate" $(pkg-config --cflags --libs heliostat)
+LD_LIBRARY_PATH=$(pkg-config --variable=libdir heliostat)
+export LD_LIBRARY_PATH
+run_example "$folder/estimate"
+
+if [ -x "$prefix/bin/heliostat" ]; then
+    echo '-- the installed program'
+    "$prefix/bin/heliostat" info
+fi

@@ -1,0 +1,656 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Whole pictures of small scenes: what every pixel should hold, and that it does not depend on threads or strategy. */
+#include "support.h"
+
+#include "core/vector.h"
+
+#include <heliostat/heliostat.h>
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAP_WIDTH = 32, MAP_HEIGHT = 16, WIDTH = 64, HEIGHT = 48, PIXELS = WIDTH * HEIGHT };
+
+static const helio_material white = {.kind = HELIO_MATERIAL_DIFFUSE, .diffuse = {1, 1, 1}};
+static const helio_material glossy = {
+    .kind = HELIO_MATERIAL_PHONG, .diffuse = {0.5f, 0.4f, 0.3f}, .specular = {0.5f, 0.5f, 0.5f}, .exponent = 40};
+static const helio_material metal = {
+    .kind = HELIO_MATERIAL_GGX, .diffuse = {1.0f, 0.8f, 0.3f}, .metallic = 1.0f, .roughness = 0.3f};
+
+/* ---- scenes made by code ---- */
+
+/* A box from (-1, 0, -1) to (1, 2, 1) with flat normals. */
+static helio_mesh *make_box(helio_context *context)
+{
+    float positions[24][3], normals[24][3];
+    uint32_t triangles[12][3];
+    for (uint32_t side = 0; side < 6; side++) {
+        vec3 normal = {0, 0, 0}, right, up;
+        float sign = side & 1 ? -1.0f : 1.0f;
+        ((float *)&normal)[side / 2] = sign;
+        right = side / 2 == 1 ? (vec3){1, 0, 0} : (vec3){0, 1, 0};
+        up = cross(normal, right);
+        for (uint32_t corner = 0; corner < 4; corner++) {
+            vec3 p = add_scaled(add_scaled(normal, right, corner == 1 || corner == 2 ? 1.0f : -1.0f), up,
+                                corner >= 2 ? 1.0f : -1.0f);
+            p.y += 1.0f;
+            vec3_to(p, positions[side * 4 + corner]);
+            vec3_to(normal, normals[side * 4 + corner]);
+        }
+        memcpy(triangles[side * 2], (uint32_t[3]){side * 4, side * 4 + 1, side * 4 + 2}, sizeof triangles[0]);
+        memcpy(triangles[side * 2 + 1], (uint32_t[3]){side * 4, side * 4 + 2, side * 4 + 3}, sizeof triangles[0]);
+    }
+    helio_mesh *mesh;
+    assert_ok(helio_mesh_create(context,
+                                &(helio_mesh_desc){.vertex_count = 24,
+                                                   .triangle_count = 12,
+                                                   .positions = positions[0],
+                                                   .normals = normals[0],
+                                                   .triangles = triangles[0]},
+                                &mesh));
+    return mesh;
+}
+
+enum { RINGS = 24, SPOKES = 48, SPHERE_VERTICES = (RINGS + 1) * SPOKES, SPHERE_TRIANGLES = 2 * RINGS * SPOKES };
+
+/* A unit sphere about (0, 1, 0) with exact normals. */
+static helio_mesh *make_sphere(helio_context *context)
+{
+    static float positions[SPHERE_VERTICES][3], normals[SPHERE_VERTICES][3];
+    static uint32_t triangles[SPHERE_TRIANGLES][3];
+    uint32_t t = 0;
+    for (uint32_t ring = 0; ring <= RINGS; ring++)
+        for (uint32_t spoke = 0; spoke < SPOKES; spoke++) {
+            double polar = PI * ring / RINGS, around = 2 * PI * spoke / SPOKES;
+            vec3 n = {(float)(sin(polar) * cos(around)), (float)cos(polar), (float)(sin(polar) * sin(around))};
+            uint32_t i = ring * SPOKES + spoke, next = ring * SPOKES + (spoke + 1) % SPOKES;
+            vec3_to(n, normals[i]);
+            vec3_to(add(n, (vec3){0, 1, 0}), positions[i]);
+            if (ring == RINGS)
+                continue;
+            memcpy(triangles[t++], (uint32_t[3]){i, next, i + SPOKES}, sizeof triangles[0]);
+            memcpy(triangles[t++], (uint32_t[3]){next, next + SPOKES, i + SPOKES}, sizeof triangles[0]);
+        }
+    helio_mesh *mesh;
+    assert_ok(helio_mesh_create(context,
+                                &(helio_mesh_desc){.vertex_count = SPHERE_VERTICES,
+                                                   .triangle_count = SPHERE_TRIANGLES,
+                                                   .positions = positions[0],
+                                                   .normals = normals[0],
+                                                   .triangles = triangles[0]},
+                                &mesh));
+    return mesh;
+}
+
+static void fill_map(float map[MAP_HEIGHT][MAP_WIDTH][3], float r, float g, float b)
+{
+    for (int y = 0; y < MAP_HEIGHT; y++)
+        for (int x = 0; x < MAP_WIDTH; x++) {
+            map[y][x][0] = r;
+            map[y][x][1] = g;
+            map[y][x][2] = b;
+        }
+}
+
+/* A blue sky over a brown ground with a sun of 2000 in one pixel, 40 degrees high, to the right of +Z. */
+static void fill_sunny(float map[MAP_HEIGHT][MAP_WIDTH][3])
+{
+    for (int y = 0; y < MAP_HEIGHT; y++)
+        for (int x = 0; x < MAP_WIDTH; x++) {
+            float height = 1.0f - 2.0f * (float)y / (MAP_HEIGHT - 1);
+            float sky[3] = {0.3f + 0.2f * height, 0.5f + 0.2f * height, 1.0f}, ground[3] = {0.2f, 0.15f, 0.1f};
+            memcpy(map[y][x], height > 0 ? sky : ground, 3 * sizeof(float));
+        }
+    map[4][13][0] = 2000.0f;
+    map[4][13][1] = 1800.0f;
+    map[4][13][2] = 1500.0f;
+}
+
+typedef struct setup {
+    helio_context *context;
+    helio_mesh *mesh;
+    helio_scene *scene;
+    helio_environment *environment;
+    helio_renderer *renderer;
+    helio_camera camera;
+} setup;
+
+typedef helio_mesh *(*mesh_maker)(helio_context *context);
+
+static setup make_setup(helio_context *context, mesh_maker make_mesh, const helio_material *material,
+                        helio_ground ground, float map[MAP_HEIGHT][MAP_WIDTH][3], helio_renderer_desc desc)
+{
+    setup s = {.context = context, .mesh = make_mesh(context)};
+    s.environment = make_environment(context, HELIO_LAYOUT_LATLONG, MAP_WIDTH, MAP_HEIGHT, 32, &map[0][0][0], NULL);
+    assert_ok(helio_scene_create(context, &(helio_scene_desc){.mesh = s.mesh, .material = material, .ground = ground},
+                                 &s.scene));
+    desc.environment = s.environment;
+    desc.scene = s.scene;
+    desc.width = desc.width ? desc.width : WIDTH;
+    desc.height = desc.height ? desc.height : HEIGHT;
+    assert_ok(helio_renderer_create(context, &desc, &s.renderer));
+    assert_ok(helio_camera_parse("orbit:azimuth=30,elevation=25,distance=1.6,fov=35", s.mesh,
+                                 (float)desc.width / (float)desc.height, &s.camera));
+    return s;
+}
+
+static void destroy_setup(setup *s)
+{
+    helio_renderer_destroy(s->renderer);
+    helio_scene_destroy(s->scene);
+    helio_environment_destroy(s->environment);
+    helio_mesh_destroy(s->context, s->mesh);
+}
+
+static helio_picture render(setup *s, uint32_t seed, helio_frame_info *info)
+{
+    assert_ok(helio_renderer_render(s->renderer, &(helio_frame_desc){.camera = s->camera, .seed = seed}, info));
+    return helio_renderer_picture(s->renderer);
+}
+
+/* ---- light ---- */
+
+static void a_white_box_vanishes_in_a_furnace(void **state)
+{
+    (void)state;
+    helio_context *context = make_context(2, NULL);
+    float map[MAP_HEIGHT][MAP_WIDTH][3];
+    fill_map(map, 1, 1, 1);
+    /* Cosine samples have no variance here; a convex body casts no shadow on itself. */
+    setup s = make_setup(context, make_box, &white, HELIO_GROUND_NONE, map,
+                         (helio_renderer_desc){.strategy = HELIO_STRATEGY_COSINE});
+    helio_picture picture = render(&s, 0, NULL);
+    double covered = 0;
+    for (int i = 0; i < PIXELS; i++) {
+        for (int c = 0; c < 3; c++)
+            assert_float_equal(picture.rgba[i * 4 + c], 1.0f, 1e-5f);
+        assert_float_equal(picture.rgba[i * 4 + 3], 1.0f, 0.0f);
+        covered += (double)picture.object[i];
+    }
+    assert_true(covered > 0.1 * PIXELS && covered < 0.8 * PIXELS);
+    destroy_setup(&s);
+    helio_context_destroy(context);
+}
+
+/* Mean of a channel over the object, and the standard error that 16 renders with other seeds show. */
+static double mean_light(setup *s, double *error)
+{
+    enum { RENDERS = 16 };
+    double sum = 0, sum2 = 0;
+    for (uint32_t seed = 0; seed < RENDERS; seed++) {
+        helio_picture picture = render(s, seed, NULL);
+        double light = 0, count = 0;
+        for (int i = 0; i < PIXELS; i++)
+            if (picture.object[i] > 0.5f) {
+                light += (double)picture.rgba[i * 4 + 1];
+                count++;
+            }
+        sum += light / count / RENDERS;
+        sum2 += light / count * (light / count) / RENDERS;
+    }
+    *error = sqrt(fmax(0, sum2 - sum * sum) / (RENDERS - 1));
+    return sum;
+}
+
+static void all_strategies_agree_with_shadows_on_each_material(void **state)
+{
+    (void)state;
+    static const helio_strategy strategies[] = {HELIO_STRATEGY_LIGHT, HELIO_STRATEGY_COSINE,
+                                                HELIO_STRATEGY_BRDF,  HELIO_STRATEGY_LIGHT_BRDF,
+                                                HELIO_STRATEGY_FACE,  HELIO_STRATEGY_FACE_BRDF};
+    const helio_material *materials[] = {&white, &glossy, &metal};
+    helio_context *context = make_context(2, NULL);
+    float map[MAP_HEIGHT][MAP_WIDTH][3];
+    fill_sunny(map);
+    map[4][13][0] = map[4][13][1] = map[4][13][2] = 60.0f; /* a sun that cosine samples can meet */
+    for (int m = 0; m < 3; m++) {
+        double reference = 0, reference_error = 0;
+        for (int i = 0; i < 6; i++) {
+            setup s = make_setup(context, make_sphere, materials[m], HELIO_GROUND_PLANE, map,
+                                 (helio_renderer_desc){.strategy = strategies[i], .spp = 128});
+            double error, mean = mean_light(&s, &error);
+            if (i == 0) {
+                reference = mean;
+                reference_error = error;
+            }
+            double z = (mean - reference) / sqrt(error * error + reference_error * reference_error + 1e-20);
+            if (fabs(z) > 8) /* 15 degrees of freedom: 8 has p = 1e-6 in Student's distribution */
+                fail_msg("material %d: %s gives %g, light %g: z = %.1f", m, helio_strategy_name(strategies[i]), mean,
+                         reference, z);
+            destroy_setup(&s);
+        }
+    }
+    helio_context_destroy(context);
+}
+
+/* More samples than the pools hold: the error keeps falling. */
+static void samples_beyond_the_pools_take_more_passes_and_converge(void **state)
+{
+    (void)state;
+    helio_context *context = make_context(2, NULL);
+    float map[MAP_HEIGHT][MAP_WIDTH][3];
+    fill_sunny(map);
+    const uint32_t spps[3] = {8, 128, 2048};
+    static float pictures[2][3][PIXELS * 4];
+    for (int run = 0; run < 2; run++)
+        for (int i = 0; i < 3; i++) {
+            setup s = make_setup(context, make_sphere, &glossy, HELIO_GROUND_PLANE, map,
+                                 (helio_renderer_desc){.spp = spps[i], .pool_length = 64});
+            helio_frame_info info;
+            assert_int_equal(helio_renderer_passes(s.renderer), spps[i] / 8);
+            memcpy(pictures[run][i], render(&s, 100 + (uint32_t)run, &info).rgba, sizeof pictures[run][i]);
+            assert_int_equal(info.passes, spps[i] / 8);
+            assert_int_equal(info.samples, info.points * spps[i]);
+            destroy_setup(&s);
+        }
+    double errors[3] = {0};
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < PIXELS * 4; k++)
+            errors[i] += pow((double)(pictures[0][i][k] - pictures[1][i][k]), 2);
+    print_message("squared difference of two seeds at 8, 128, 2048 spp: %.3g %.3g %.3g\n", errors[0], errors[1],
+                  errors[2]);
+    /* 16 and 256 times the samples should leave 1/16 and 1/256 of the variance. All pixels share the pools, so that their
+     * errors go together and the sum over pixels is known to a factor of about four only. */
+    assert_true(errors[1] < errors[0] / 4);
+    assert_true(errors[2] < errors[0] / 50);
+    helio_context_destroy(context);
+}
+
+static void camera_samples_smooth_edges_and_share_passes(void **state)
+{
+    (void)state;
+    helio_context *context = make_context(2, NULL);
+    float map[MAP_HEIGHT][MAP_WIDTH][3];
+    fill_sunny(map);
+    setup s = make_setup(context, make_sphere, &white, HELIO_GROUND_NONE, map,
+                         (helio_renderer_desc){.spp = 16, .aa = 20, .background = HELIO_BACKGROUND_NONE});
+    helio_frame_info info;
+    helio_picture picture = render(&s, 0, &info);
+    assert_int_equal(info.passes, 3); /* 8 camera samples of 16 fit in one eighth of 1024 */
+    int partial = 0;
+    for (int i = 0; i < PIXELS; i++) {
+        assert_float_equal(picture.rgba[i * 4 + 3], picture.object[i], 1e-6f);
+        partial += picture.object[i] > 0.0f && picture.object[i] < 1.0f;
+    }
+    assert_true(partial > 40 && partial < PIXELS / 4);
+    destroy_setup(&s);
+    helio_context_destroy(context);
+}
+
+/* ---- shadows and alpha ---- */
+
+static float alpha_at(const helio_picture *picture, int x, int y)
+{
+    return picture->rgba[(y * WIDTH + x) * 4 + 3];
+}
+
+static void the_plane_is_darker_where_the_box_hides_the_sun(void **state)
+{
+    (void)state;
+    helio_context *context = make_context(2, NULL);
+    float map[MAP_HEIGHT][MAP_WIDTH][3];
+    fill_sunny(map); /* the sun stands towards +Z and +X, so the shadow falls towards -Z and -X */
+    setup s = make_setup(context, make_box, &white, HELIO_GROUND_PLANE, map, (helio_renderer_desc){.spp = 128});
+    assert_ok(helio_camera_parse("lookat:eye=0,12,0.01,at=0,0,0,fov=60", s.mesh, (float)WIDTH / HEIGHT, &s.camera));
+    helio_picture picture = render(&s, 0, NULL);
+    /* From above: x to the right is +X, y down is +Z. The box fills the middle, the plane everything else. */
+    int middle = (HEIGHT / 2 * WIDTH + WIDTH / 2) * 4, sunny = ((HEIGHT / 2 + 14) * WIDTH + WIDTH / 2) * 4;
+    int shaded = ((HEIGHT / 2 - 9) * WIDTH + WIDTH / 2 - 4) * 4;
+    assert_float_equal(picture.object[middle / 4], 1.0f, 0.0f);
+    assert_float_equal(picture.object[sunny / 4], 0.0f, 0.0f);
+    assert_true(picture.rgba[shaded] < 0.3f * picture.rgba[sunny]);
+    assert_true(picture.rgba[shaded] > 0.0f);
+    destroy_setup(&s);
+    helio_context_destroy(context);
+}
+
+static void the_shadow_catcher_keeps_only_the_shadow(void **state)
+{
+    (void)state;
+    helio_context *context = make_context(2, NULL);
+    float map[MAP_HEIGHT][MAP_WIDTH][3];
+    fill_sunny(map);
+    setup s = make_setup(context, make_box, &white, HELIO_GROUND_SHADOW, map, (helio_renderer_desc){.spp = 128});
+    assert_ok(helio_camera_parse("lookat:eye=0,12,0.01,at=0,0,0,fov=60", s.mesh, (float)WIDTH / HEIGHT, &s.camera));
+    helio_picture picture = render(&s, 0, NULL);
+    int shaded = (HEIGHT / 2 - 9) * WIDTH + WIDTH / 2 - 4;
+    assert_float_equal(alpha_at(&picture, WIDTH / 2, HEIGHT / 2), 1.0f, 0.0f); /* the box */
+    assert_true(alpha_at(&picture, WIDTH / 2 - 4, HEIGHT / 2 - 9) > 0.6f);     /* its shadow */
+    assert_true(alpha_at(&picture, WIDTH - 2, HEIGHT - 2) < 0.05f);            /* open ground */
+    for (int c = 0; c < 3; c++)
+        assert_float_equal(picture.rgba[shaded * 4 + c], 0.0f, 0.0f);
+    assert_float_equal(picture.object[shaded], 0.0f, 0.0f);
+    destroy_setup(&s);
+
+    /* With the environment asked for, it shows through, darkened, and the picture is opaque. */
+    s = make_setup(context, make_box, &white, HELIO_GROUND_SHADOW, map,
+                   (helio_renderer_desc){.spp = 128, .background = HELIO_BACKGROUND_ENVIRONMENT});
+    assert_ok(helio_camera_parse("lookat:eye=0,12,0.01,at=0,0,0,fov=60", s.mesh, (float)WIDTH / HEIGHT, &s.camera));
+    picture = render(&s, 0, NULL);
+    int open = (HEIGHT - 2) * WIDTH + WIDTH - 2;
+    assert_float_equal(picture.rgba[shaded * 4 + 3], 1.0f, 0.0f);
+    assert_float_equal(picture.rgba[open * 4], 0.2f, 0.01f); /* the map's brown ground, hardly darkened */
+    assert_true(picture.rgba[shaded * 4] < 0.4f * picture.rgba[open * 4]);
+    destroy_setup(&s);
+    helio_context_destroy(context);
+}
+
+static void alpha_is_coverage_without_a_background(void **state)
+{
+    (void)state;
+    helio_context *context = make_context(1, NULL);
+    float map[MAP_HEIGHT][MAP_WIDTH][3];
+    fill_sunny(map);
+    setup s = make_setup(context, make_box, &white, HELIO_GROUND_PLANE, map,
+                         (helio_renderer_desc){.spp = 16, .background = HELIO_BACKGROUND_NONE});
+    assert_ok(helio_camera_parse("lookat:eye=0,1,8,at=0,1,0,fov=60", s.mesh, (float)WIDTH / HEIGHT, &s.camera));
+    helio_picture picture = render(&s, 0, NULL);
+    assert_float_equal(alpha_at(&picture, 2, 2), 0.0f, 0.0f); /* sky */
+    assert_float_equal(picture.rgba[(2 * WIDTH + 2) * 4], 0.0f, 0.0f);
+    assert_float_equal(alpha_at(&picture, WIDTH / 2, HEIGHT / 2), 1.0f, 0.0f); /* box */
+    assert_float_equal(alpha_at(&picture, 2, HEIGHT - 2), 1.0f, 0.0f);         /* plane */
+    assert_float_equal(picture.object[(HEIGHT - 2) * WIDTH + 2], 0.0f, 0.0f);
+    destroy_setup(&s);
+    helio_context_destroy(context);
+}
+
+/* ---- axes ---- */
+
+/* What a camera sees of the map: a pixel of each of the six directions, and what is to the right and above. */
+static void the_background_shows_the_map_the_right_way_round(void **state)
+{
+    (void)state;
+    /* Directions by OpenEXR's lat-long axes: column 16 of 32 is +Z, 8 is +X, 0 is -Z, 24 is -X; row 0 is +Y. */
+    static const struct {
+        const char *camera;
+        int row, column;
+    } views[] = {
+        {"lookat:eye=0,1,0,at=0,1,9,fov=30", 7, 15},
+        {"lookat:eye=0,1,0,at=9,1,0,fov=30", 7, 7},
+        {"lookat:eye=0,1,0,at=0,1,-9,fov=30", 7, 31},
+        {"lookat:eye=0,1,0,at=-9,1,0,fov=30", 7, 23},
+    };
+    helio_context *context = make_context(1, NULL);
+    for (int i = 0; i < 4; i++) {
+        float map[MAP_HEIGHT][MAP_WIDTH][3];
+        fill_map(map, 0, 0, 0);
+        map[views[i].row][views[i].column][0] =
+            1.0f; /* just above the horizon, just left of the middle of the map's view */
+        setup s =
+            make_setup(context, make_box, &white, HELIO_GROUND_NONE, map, (helio_renderer_desc){.spp = 8, .aa = 1});
+        /* The box is in the way of every view from its inside: move the eye far above it. */
+        assert_ok(helio_camera_parse(views[i].camera, s.mesh, (float)WIDTH / HEIGHT, &s.camera));
+        s.camera.eye[1] = s.camera.at[1] = 1000.0f;
+        helio_picture picture = render(&s, 0, NULL);
+        double light = 0, x = 0, y = 0;
+        for (int p = 0; p < PIXELS; p++) {
+            light += (double)picture.rgba[p * 4];
+            x += (double)picture.rgba[p * 4] * (p % WIDTH + 0.5);
+            y += (double)picture.rgba[p * 4] * (p / WIDTH + 0.5);
+        }
+        assert_true(light > 1.0);
+        /* A camera that looks along +Z has +X at its left, as the map has: a column left of the centre is seen left. The
+         * pixel is 11.25 degrees wide and high: its centre is 5.6 degrees left of the middle and 5.6 above. */
+        double per_degree = HEIGHT / 30.0;
+        assert_float_equal((float)(x / light), (float)(WIDTH / 2 - 5.6 * per_degree), (float)(1.5 * per_degree));
+        assert_float_equal((float)(y / light), (float)(HEIGHT / 2 - 5.6 * per_degree), (float)(1.5 * per_degree));
+        destroy_setup(&s);
+    }
+    helio_context_destroy(context);
+}
+
+static void light_comes_from_where_the_map_shows_it(void **state)
+{
+    (void)state;
+    helio_context *context = make_context(1, NULL);
+    float map[MAP_HEIGHT][MAP_WIDTH][3];
+    fill_map(map, 0, 0, 0);
+    map[7][7][0] = map[7][8][0] = 100.0f; /* red from +X */
+    for (int x = 0; x < MAP_WIDTH; x++)
+        map[0][x][1] = 100.0f;              /* green from +Y */
+    map[7][15][2] = map[7][16][2] = 100.0f; /* blue from +Z */
+    setup s = make_setup(context, make_box, &white, HELIO_GROUND_NONE, map, (helio_renderer_desc){.spp = 128});
+    assert_ok(helio_camera_parse("lookat:eye=8,9,8,at=0,1,0,fov=25", s.mesh, (float)WIDTH / HEIGHT, &s.camera));
+    helio_picture picture = render(&s, 0, NULL);
+    /* The corner (1, 2, 1) is in the middle: +Y above it, +Z to its left, +X to its right. */
+    const float *top = picture.rgba + ((HEIGHT / 2 - 12) * WIDTH + WIDTH / 2) * 4;
+    const float *left = picture.rgba + ((HEIGHT / 2 + 6) * WIDTH + WIDTH / 2 - 6) * 4;
+    const float *right = picture.rgba + ((HEIGHT / 2 + 6) * WIDTH + WIDTH / 2 + 6) * 4;
+    assert_true(right[0] > 10 * right[2] && left[2] > 10 * left[0] && top[1] > 5 * left[1] && top[1] > 5 * right[1]);
+    /* A turn by 90 degrees brings the light of +Z to +X. */
+    assert_ok(helio_environment_orient(s.environment, &(helio_orientation){.rotate = 90}));
+    picture = render(&s, 0, NULL);
+    assert_true(right[2] > 10 * right[0]);
+    destroy_setup(&s);
+    helio_context_destroy(context);
+}
+
+/* ---- the interface ---- */
+
+static void the_same_seed_gives_the_same_bits_on_any_number_of_threads(void **state)
+{
+    (void)state;
+    static float first[PIXELS * 4];
+    float map[MAP_HEIGHT][MAP_WIDTH][3];
+    fill_sunny(map);
+    const uint32_t threads[] = {1, 2, 5};
+    for (int i = 0; i < 3; i++) {
+        helio_context *context = make_context(threads[i], NULL);
+        setup s = make_setup(context, make_sphere, &glossy, HELIO_GROUND_PLANE, map,
+                             (helio_renderer_desc){.spp = 100, .aa = 3, .pool_length = 256});
+        helio_picture picture = render(&s, 5, NULL);
+        if (i == 0)
+            memcpy(first, picture.rgba, sizeof first);
+        assert_memory_equal(first, picture.rgba, sizeof first);
+        picture = render(&s, 6, NULL);
+        assert_memory_not_equal(first, picture.rgba, sizeof first);
+        destroy_setup(&s);
+        helio_context_destroy(context);
+    }
+}
+
+static void update_and_render_take_no_memory(void **state)
+{
+    (void)state;
+    memory_count count = {0};
+    helio_context *context = make_context(2, &count);
+    float map[MAP_HEIGHT][MAP_WIDTH][3];
+    fill_sunny(map);
+    setup s = make_setup(context, make_sphere, &glossy, HELIO_GROUND_SHADOW, map,
+                         (helio_renderer_desc){.spp = 200, .aa = 2, .aovs = true});
+    size_t before = count.taken;
+    for (uint32_t frame = 0; frame < 3; frame++) {
+        map[3][frame][0] = 50.0f;
+        assert_ok(helio_environment_update(s.environment, &map[0][0][0], NULL));
+        render(&s, frame, NULL);
+    }
+    assert_int_equal(count.taken, before);
+    destroy_setup(&s);
+    helio_context_destroy(context);
+    assert_int_equal(count.live, 0);
+}
+
+/* Frame t is lit by the tables of frame t: after an update the picture equals that of a renderer that never saw another map. */
+static void every_frame_is_lit_by_its_own_map(void **state)
+{
+    (void)state;
+    static float expected[PIXELS * 4];
+    helio_context *context = make_context(2, NULL);
+    float sunny[MAP_HEIGHT][MAP_WIDTH][3], grey[MAP_HEIGHT][MAP_WIDTH][3];
+    fill_sunny(sunny);
+    fill_map(grey, 0.5f, 0.5f, 0.5f);
+    setup fresh = make_setup(context, make_sphere, &glossy, HELIO_GROUND_PLANE, grey, (helio_renderer_desc){.spp = 32});
+    memcpy(expected, render(&fresh, 9, NULL).rgba, sizeof expected);
+    destroy_setup(&fresh);
+    setup s = make_setup(context, make_sphere, &glossy, HELIO_GROUND_PLANE, sunny, (helio_renderer_desc){.spp = 32});
+    assert_memory_not_equal(expected, render(&s, 9, NULL).rgba, sizeof expected);
+    assert_ok(helio_environment_update(s.environment, &grey[0][0][0], NULL));
+    assert_memory_equal(expected, render(&s, 9, NULL).rgba, sizeof expected);
+    destroy_setup(&s);
+    helio_context_destroy(context);
+}
+
+static bool stop_at_half(void *user, float done)
+{
+    float *last = user;
+    assert_true(done >= *last && done <= 1.0f);
+    *last = done;
+    return done < 0.5f;
+}
+
+static void progress_is_told_and_can_stop_the_frame(void **state)
+{
+    (void)state;
+    helio_context *context = make_context(1, NULL);
+    float map[MAP_HEIGHT][MAP_WIDTH][3], last = 0;
+    fill_sunny(map);
+    setup s = make_setup(context, make_sphere, &white, HELIO_GROUND_PLANE, map,
+                         (helio_renderer_desc){.spp = 8, .width = 640, .height = 480});
+    helio_frame_info info;
+    helio_frame_desc desc = {.camera = s.camera, .progress = stop_at_half, .user = &last};
+    assert_ok(helio_renderer_render(s.renderer, &desc, &info));
+    assert_true(info.stopped);
+    assert_true(last >= 0.5f && last < 0.9f);
+    helio_picture picture = helio_renderer_picture(s.renderer);
+    assert_true(picture.rgba[3] == 1.0f);                 /* done */
+    assert_true(picture.rgba[640 * 480 * 4 - 1] == 0.0f); /* not reached */
+    destroy_setup(&s);
+    helio_context_destroy(context);
+}
+
+static void aovs_hold_what_the_camera_meets(void **state)
+{
+    (void)state;
+    helio_context *context = make_context(1, NULL);
+    float map[MAP_HEIGHT][MAP_WIDTH][3];
+    fill_sunny(map);
+    setup s =
+        make_setup(context, make_box, &glossy, HELIO_GROUND_NONE, map, (helio_renderer_desc){.spp = 8, .aovs = true});
+    assert_ok(helio_camera_parse("lookat:eye=0,1,8,at=0,1,0,fov=40", s.mesh, (float)WIDTH / HEIGHT, &s.camera));
+    helio_picture picture = render(&s, 0, NULL);
+    int middle = HEIGHT / 2 * WIDTH + WIDTH / 2;
+    assert_float_equal(picture.depth[middle], 7.0f, 1e-4f);
+    assert_float_equal(picture.normal[middle * 3 + 2], 1.0f, 1e-6f);
+    assert_float_equal(picture.position[middle * 3 + 2], 1.0f, 1e-5f);
+    assert_float_equal(picture.albedo[middle * 3], 1.0f, 1e-6f); /* kd + ks */
+    assert_true(isinf(picture.depth[0]) && picture.normal[0] == 0.0f && picture.albedo[0] == 0.0f);
+    destroy_setup(&s);
+    helio_context_destroy(context);
+}
+
+static void bad_descs_are_refused_with_a_sentence(void **state)
+{
+    (void)state;
+    helio_context *context = make_context(1, NULL);
+    float map[MAP_HEIGHT][MAP_WIDTH][3];
+    fill_sunny(map);
+    setup s = make_setup(context, make_box, &white, HELIO_GROUND_SHADOW, map, (helio_renderer_desc){.spp = 8});
+    const helio_renderer_desc bad[] = {
+        {.environment = NULL, .scene = s.scene},
+        {.environment = s.environment, .scene = NULL},
+        {.environment = s.environment, .scene = s.scene, .width = 20000},
+        {.environment = s.environment, .scene = s.scene, .spp = 1u << 21},
+        {.environment = s.environment, .scene = s.scene, .aa = 5000},
+        {.environment = s.environment, .scene = s.scene, .pool_length = 1000},
+        {.environment = s.environment, .scene = s.scene, .brdf_share = 1.5f},
+        {.environment = s.environment, .scene = s.scene, .strategy = (helio_strategy)99},
+        {.environment = s.environment, .scene = s.scene, .no_visibility = true}, /* with a shadow catcher */
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        helio_renderer *renderer = (helio_renderer *)&s;
+        assert_int_equal(helio_renderer_create(context, &bad[i], &renderer), HELIO_ERR_ARGUMENT);
+        assert_null(renderer);
+        assert_true(strlen(helio_last_error()) > 20);
+    }
+    destroy_setup(&s);
+    helio_context_destroy(context);
+}
+
+/* ---- stored references ---- */
+
+/* Pictures of 32 x 24 pixels at 65,536 spp, made by HELIO_WRITE_REFERENCES=1 test_render and looked at. */
+enum { REFERENCE_WIDTH = 32, REFERENCE_HEIGHT = 24 };
+
+static void compare_with_reference(const char *name, mesh_maker make_mesh, const helio_material *material,
+                                   helio_strategy strategy, double tolerance)
+{
+    const char *folder = getenv("HELIO_TEST_FILES");
+    bool write = getenv("HELIO_WRITE_REFERENCES") != NULL;
+    char path[TEST_PATH_SIZE];
+    if (folder == NULL) {
+        print_message("skipped: HELIO_TEST_FILES does not name the folder of references\n");
+        skip();
+    }
+    snprintf(path, sizeof path, "%s/reference-%s.pfm", folder, name);
+    helio_context *context = make_context(2, NULL);
+    float map[MAP_HEIGHT][MAP_WIDTH][3];
+    fill_sunny(map);
+    setup s = make_setup(
+        context, make_mesh, material, HELIO_GROUND_PLANE, map,
+        (helio_renderer_desc){
+            .width = REFERENCE_WIDTH, .height = REFERENCE_HEIGHT, .strategy = strategy, .spp = write ? 65536 : 64});
+    helio_picture picture = render(&s, 1, NULL);
+    if (write)
+        assert_ok(helio_picture_write(context, path, &picture, NULL));
+    helio_image *reference;
+    assert_ok(helio_image_read(context, path, NULL, &reference));
+    assert_int_equal(reference->width, REFERENCE_WIDTH);
+    assert_int_equal(reference->height, REFERENCE_HEIGHT);
+    double error = 0, power = 0;
+    for (int i = 0; i < REFERENCE_WIDTH * REFERENCE_HEIGHT; i++)
+        for (int c = 0; c < 3; c++) {
+            double exact = (double)reference->rgb[i * 3 + c];
+            error += pow((double)picture.rgba[i * 4 + c] - exact, 2);
+            power += exact * exact;
+        }
+    print_message("%s, %s: error %.2e of the picture's power\n", name, helio_strategy_name(strategy), error / power);
+    assert_true(error / power < tolerance);
+    helio_image_destroy(context, reference);
+    destroy_setup(&s);
+    helio_context_destroy(context);
+}
+
+/* Tolerances are about three times what 64 spp give; a wrong factor, axis or shadow is off by far more. */
+static void sphere_matches_its_reference(void **state)
+{
+    (void)state;
+    compare_with_reference("sphere-matte", make_sphere, &white, HELIO_STRATEGY_FACE, 3e-3);
+    compare_with_reference("sphere-matte", make_sphere, &white, HELIO_STRATEGY_LIGHT_BRDF, 3e-3);
+    compare_with_reference("sphere-glossy", make_sphere, &glossy, HELIO_STRATEGY_FACE_BRDF, 3e-3);
+    compare_with_reference("sphere-metal", make_sphere, &metal, HELIO_STRATEGY_FACE_BRDF, 3e-3);
+}
+
+static void box_matches_its_reference(void **state)
+{
+    (void)state;
+    compare_with_reference("box-glossy", make_box, &glossy, HELIO_STRATEGY_FACE_BRDF, 3e-3);
+    compare_with_reference("box-glossy", make_box, &glossy, HELIO_STRATEGY_LIGHT, 3e-2);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_white_box_vanishes_in_a_furnace),
+        cmocka_unit_test(all_strategies_agree_with_shadows_on_each_material),
+        cmocka_unit_test(samples_beyond_the_pools_take_more_passes_and_converge),
+        cmocka_unit_test(camera_samples_smooth_edges_and_share_passes),
+        cmocka_unit_test(the_plane_is_darker_where_the_box_hides_the_sun),
+        cmocka_unit_test(the_shadow_catcher_keeps_only_the_shadow),
+        cmocka_unit_test(alpha_is_coverage_without_a_background),
+        cmocka_unit_test(the_background_shows_the_map_the_right_way_round),
+        cmocka_unit_test(light_comes_from_where_the_map_shows_it),
+        cmocka_unit_test(the_same_seed_gives_the_same_bits_on_any_number_of_threads),
+        cmocka_unit_test(update_and_render_take_no_memory),
+        cmocka_unit_test(every_frame_is_lit_by_its_own_map),
+        cmocka_unit_test(progress_is_told_and_can_stop_the_frame),
+        cmocka_unit_test(aovs_hold_what_the_camera_meets),
+        cmocka_unit_test(bad_descs_are_refused_with_a_sentence),
+        cmocka_unit_test(sphere_matches_its_reference),
+        cmocka_unit_test(box_matches_its_reference),
+    };
+    return cmocka_run_group_tests_name("render", tests, NULL, NULL);
+}
