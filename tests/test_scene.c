@@ -1136,7 +1136,8 @@ static void camera_parse_refuses_everything_else(void **state)
     assert_error(helio_camera_parse("auto", mesh, 0, &c), HELIO_ERR_ARGUMENT, "aspect 0");
     assert_error(helio_camera_parse("auto", mesh, NAN, &c), HELIO_ERR_ARGUMENT, "aspect nan");
     assert_error(helio_camera_parse("auto", mesh, 1, NULL), HELIO_ERR_ARGUMENT, "place");
-    assert_int_equal(helio_camera_parse("orbit:azimuth=90", NULL, 1, NULL), HELIO_OK); /* without a mesh: checked only */
+    assert_int_equal(helio_camera_parse("orbit:azimuth=90", NULL, 1, NULL),
+                     HELIO_OK); /* without a mesh: checked only */
     assert_error(helio_camera_parse("orbit:roll=90", NULL, 1, NULL), HELIO_ERR_ARGUMENT, "roll");
     assert_error(helio_camera_parse(NULL, mesh, 1, &c), HELIO_ERR_ARGUMENT, "specification");
     assert_true(c.fov == 42.0f); /* outputs are untouched */

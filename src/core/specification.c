@@ -59,21 +59,25 @@ static bool is_key_of(const specification_field *field, const char *token, int k
     return strlen(field->key) == (size_t)key_length && memcmp(field->key, token, (size_t)key_length) == 0;
 }
 
-static helio_status find_field(const reader *r, int key_length, specification_field **field)
+/* The field that the token names, marked as given; NULL, with the last error set, if there is none or it was given before. */
+static specification_field *find_field(const reader *r, int key_length)
 {
     for (size_t i = 0; i < r->field_count; i++) {
-        if (!is_key_of(&r->fields[i], r->token, key_length))
+        specification_field *field = &r->fields[i];
+        if (!is_key_of(field, r->token, key_length))
             continue;
-        if (r->fields[i].given) {
+        if (field->given) {
             char keys[200];
             list_keys(r, keys, sizeof keys);
-            return fail(HELIO_ERR_ARGUMENT, "%s \"%.200s\": %s is given twice; the keys are %s, each at most once",
-                        r->what, r->text, r->fields[i].key, keys);
+            fail(HELIO_ERR_ARGUMENT, "%s \"%.200s\": %s is given twice; the keys are %s, each at most once", r->what,
+                 r->text, field->key, keys);
+            return NULL;
         }
-        *field = &r->fields[i];
-        return HELIO_OK;
+        field->given = true;
+        return field;
     }
-    return fail_key(r, key_length);
+    fail_key(r, key_length);
+    return NULL;
 }
 
 /* Decimal numbers only: strtod() alone would take blanks, "nan", "inf" and hexadecimal digits as well. */
@@ -137,8 +141,9 @@ static helio_status parse_tokens(reader *r)
         if (equals != NULL || field == NULL) {
             if (field != NULL)
                 HELIO_TRY(finish_field(r, field, numbers));
-            HELIO_TRY(find_field(r, equals ? (int)(equals - r->token) : -1, &field));
-            field->given = true;
+            field = find_field(r, equals ? (int)(equals - r->token) : -1);
+            if (field == NULL)
+                return HELIO_ERR_ARGUMENT;
             numbers = 0;
         }
         HELIO_TRY(add_number(r, field, numbers++, number, r->token_length - (int)(number - r->token)));

@@ -83,7 +83,7 @@ static void convert_row(png_decoder *decoder, uint32_t row, png_const_bytep byte
     helio_image *image = decoder->image;
     size_t channels = image->alpha ? 4 : 3, first = (size_t)row * image->width;
     for (size_t column = 0; column < image->width; column++) {
-        unsigned samples[4];
+        unsigned samples[4] = {0};
         for (size_t c = 0; c < channels; c++, bytes += depth / 8)
             samples[c] = depth == 8 ? bytes[0] : (unsigned)bytes[0] << 8 | bytes[1];
         for (size_t c = 0; c < 3; c++)

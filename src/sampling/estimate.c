@@ -226,7 +226,7 @@ static void add_samples(const helio_shading_point *point, const helio_estimate_d
 void estimate_point(const helio_pools *pools, const helio_shading_point *point, const helio_estimate_desc *desc,
                     estimate_result *result)
 {
-    gathering g;
+    gathering g = {0};
     helio_sample samples[BATCH];
     begin(&g, pools, point, desc);
     *result = (estimate_result){0};
@@ -264,7 +264,7 @@ helio_status helio_count(const helio_pools *pools, const helio_shading_point *po
     if (point == NULL || counts == NULL)
         return fail(HELIO_ERR_ARGUMENT, "helio_count needs a shading point and a place for the counts");
     HELIO_TRY(estimate_resolve(pools, given, &desc));
-    gathering g;
+    gathering g = {0};
     begin(&g, pools, point, &desc);
     *counts = g.counts;
     return HELIO_OK;
@@ -277,7 +277,7 @@ helio_status helio_gather(const helio_pools *pools, const helio_shading_point *p
     if (point == NULL || samples == NULL || count == NULL)
         return fail(HELIO_ERR_ARGUMENT, "helio_gather needs a shading point and places for samples and their count");
     HELIO_TRY(estimate_resolve(pools, given, &desc));
-    gathering g;
+    gathering g = {0};
     begin(&g, pools, point, &desc);
     uint32_t taken = 0;
     for (uint32_t technique = 0; technique < TECHNIQUES; technique++) {
