@@ -11,7 +11,7 @@
 
 /* A pixel under a texel. weight: the part of the texel's solid angle that the pixel covers; a texel's weights sum to 1. */
 typedef struct overlap {
-    uint16_t row, column; /* of the pixel */
+    uint32_t row, column; /* of the pixel */
     float weight;
 } overlap;
 
@@ -22,7 +22,6 @@ typedef struct overlap_geometry {
     /* Lat-long: [map_height + 1], sine of the latitude of the borders between rows, from 1 down to -1.
      * Strips: [map_width + 1], face coordinates of the borders between pixels, from -1 to 1. */
     const double *borders;
-    double longitude; /* lat-long, side faces: of the face's axis, radians from +Z towards +X */
 } overlap_geometry;
 
 /* Overlaps of texel (row, column) of a face, at most overlap_..._bound() of them. Returns their number. */
@@ -30,7 +29,7 @@ typedef uint32_t (*overlap_generator)(const overlap_geometry *geometry, uint32_t
                                       overlap *overlaps);
 typedef size_t (*overlap_bound)(const overlap_geometry *geometry, uint32_t row, uint32_t column);
 
-/* Lat-long maps: a side face with its axis at a longitude, and the face +Y. */
+/* Lat-long maps: the faces +Z and +Y. */
 uint32_t overlap_side(const overlap_geometry *geometry, uint32_t row, uint32_t column, overlap *overlaps);
 size_t overlap_side_bound(const overlap_geometry *geometry, uint32_t row, uint32_t column);
 uint32_t overlap_pole(const overlap_geometry *geometry, uint32_t row, uint32_t column, overlap *overlaps);

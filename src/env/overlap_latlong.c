@@ -97,8 +97,8 @@ static double area_below(const circle_piece *piece, double bottom, double top)
 
 /* ---- overlaps of any outline ---- */
 
-typedef void (*bounding_circles)(const overlap_geometry *geometry, const texel_outline *outline, double longitude,
-                                 great_circle *upper, great_circle *lower);
+typedef void (*bounding_circles)(const texel_outline *outline, double longitude, great_circle *upper,
+                                 great_circle *lower);
 
 /* Row of the map that holds a sine of latitude. */
 static uint32_t find_row(const overlap_geometry *geometry, double sine)
@@ -168,14 +168,14 @@ static uint32_t fill_outline(const overlap_geometry *geometry, const texel_outli
     for (int64_t c = first; c <= last; c++) {
         overlap *column = overlaps + count;
         for (uint32_t i = 0; i < rows; i++)
-            column[i] = (overlap){(uint16_t)(top + i), (uint16_t)((c % width + width) % width), 0.0f};
+            column[i] = (overlap){top + i, (uint32_t)((c + width) % width), 0.0f};
         for (int s = 0; s + 1 < outline->stop_count; s++) {
             double from = fmax(outline->stops[s], longitude_of(geometry, (double)(c + 1)));
             double to = fmin(outline->stops[s + 1], longitude_of(geometry, (double)c));
             if (!(from < to))
                 continue;
             great_circle upper, lower;
-            circles(geometry, outline, 0.5 * (from + to), &upper, &lower);
+            circles(outline, 0.5 * (from + to), &upper, &lower);
             add_piece(geometry, &upper, &lower, from, to, top, rows, column);
         }
         count += compact(column, rows, solid_angle);
@@ -212,7 +212,7 @@ static texel_outline outline_texel(const overlap_geometry *geometry, uint32_t ro
     };
 }
 
-/* ---- side faces: two edges are meridians, the others circles whose highest point is on the face's axis ---- */
+/* ---- the face +Z: two edges are meridians, the others circles whose highest point is on the face's axis ---- */
 
 static texel_outline outline_side(const overlap_geometry *geometry, uint32_t row, uint32_t column)
 {
@@ -222,22 +222,21 @@ static texel_outline outline_side(const overlap_geometry *geometry, uint32_t row
     double top = outline.v0 < 0 ? nearest : farthest, bottom = outline.v1 > 0 ? nearest : farthest;
     outline.highest = -outline.v0 / sqrt(1.0 + top * top + outline.v0 * outline.v0);
     outline.lowest = -outline.v1 / sqrt(1.0 + bottom * bottom + outline.v1 * outline.v1);
-    set_range(&outline, geometry->longitude + atan(outline.u0), geometry->longitude + atan(outline.u1));
-    add_stop(&outline, geometry->longitude);
+    set_range(&outline, atan(outline.u0), atan(outline.u1));
+    add_stop(&outline, 0.0);
     return outline;
 }
 
-static great_circle side_circle(const overlap_geometry *geometry, double v)
+static great_circle side_circle(double v)
 {
-    return (great_circle){fabs(v) / sqrt(1.0 + v * v), geometry->longitude, v < 0 ? 1.0 : -1.0};
+    return (great_circle){fabs(v) / sqrt(1.0 + v * v), 0.0, v < 0 ? 1.0 : -1.0};
 }
 
-static void side_circles(const overlap_geometry *geometry, const texel_outline *outline, double longitude,
-                         great_circle *upper, great_circle *lower)
+static void side_circles(const texel_outline *outline, double longitude, great_circle *upper, great_circle *lower)
 {
     (void)longitude;
-    *upper = side_circle(geometry, outline->v0);
-    *lower = side_circle(geometry, outline->v1);
+    *upper = side_circle(outline->v0);
+    *lower = side_circle(outline->v1);
 }
 
 size_t overlap_side_bound(const overlap_geometry *geometry, uint32_t row, uint32_t column)
@@ -316,10 +315,8 @@ static great_circle turn_near(great_circle circle, double longitude)
 }
 
 /* Where a ray from the pole enters and leaves the rectangle: the edges there. */
-static void pole_circles(const overlap_geometry *geometry, const texel_outline *o, double longitude,
-                         great_circle *upper, great_circle *lower)
+static void pole_circles(const texel_outline *o, double longitude, great_circle *upper, great_circle *lower)
 {
-    (void)geometry;
     double x = sin(longitude), z = cos(longitude);
     double x_near = x > 0 ? o->u0 : o->u1, x_far = x > 0 ? o->u1 : o->u0;
     double z_near = z > 0 ? o->v0 : o->v1, z_far = z > 0 ? o->v1 : o->v0;

@@ -48,7 +48,7 @@ uint32_t overlap_strip(const overlap_geometry *geometry, uint32_t row, uint32_t 
         for (uint32_t x = left; x <= right; x++) {
             double part = cube_solid_angle(fmax(u0, borders[x]), fmin(u1, borders[x + 1]), fmax(v0, borders[y]),
                                            fmin(v1, borders[y + 1]));
-            overlaps[count++] = (overlap){(uint16_t)y, (uint16_t)x, (float)fmax(0.0, part / whole)};
+            overlaps[count++] = (overlap){y, x, (float)fmax(0.0, part / whole)};
         }
     return count;
 }

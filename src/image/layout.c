@@ -1,28 +1,23 @@
 /* SPDX-License-Identifier: MIT */
 #include "core/error.h"
+#include "core/name_list.h"
 
 #include <heliostat/image.h>
 
-#include <string.h>
-
 static const char *const NAMES[] = {"auto", "latlong", "strip", "strip-openexr"};
-enum { LAYOUT_COUNT = sizeof NAMES / sizeof *NAMES };
+static const name_list LAYOUTS = NAME_LIST("layout", NAMES);
 
 const char *helio_layout_name(helio_layout layout)
 {
-    return (unsigned)layout < LAYOUT_COUNT ? NAMES[layout] : "unknown";
+    return name_list_get(&LAYOUTS, (int)layout);
 }
 
 helio_status helio_layout_parse(const char *name, helio_layout *layout)
 {
-    if (name == NULL || layout == NULL)
-        return fail(HELIO_ERR_ARGUMENT, "helio_layout_parse needs a name and a place for the layout");
-    for (unsigned i = 0; i < LAYOUT_COUNT; i++)
-        if (strcmp(name, NAMES[i]) == 0) {
-            *layout = (helio_layout)i;
-            return HELIO_OK;
-        }
-    return fail(HELIO_ERR_ARGUMENT, "layout \"%s\" is unknown; use auto, latlong, strip or strip-openexr", name);
+    int value;
+    HELIO_TRY(name_list_find(&LAYOUTS, layout ? name : NULL, &value));
+    *layout = (helio_layout)value;
+    return HELIO_OK;
 }
 
 static bool is_latlong_shape(uint64_t width, uint64_t height)
@@ -65,8 +60,7 @@ helio_status helio_layout_guess(uint32_t width, uint32_t height, helio_layout hi
     if (width == 0 || height == 0 || layout == NULL)
         return fail(HELIO_ERR_ARGUMENT, "helio_layout_guess needs a size of at least 1 x 1 (got %u x %u) and a place",
                     width, height);
-    if ((unsigned)hint >= LAYOUT_COUNT)
-        return fail(HELIO_ERR_ARGUMENT, "layout %d is unknown; use auto, latlong, strip or strip-openexr", (int)hint);
+    HELIO_TRY(name_list_check(&LAYOUTS, (int)hint));
     if (width == 1 && height == 1) {
         *layout = HELIO_LAYOUT_LATLONG; /* constant: any layout does */
         return HELIO_OK;

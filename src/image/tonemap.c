@@ -2,29 +2,24 @@
 #include "image/tonemap.h"
 
 #include "core/error.h"
+#include "core/name_list.h"
 #include "core/vector.h"
 #include "image/colour.h"
 
-#include <string.h>
-
 static const char *const NAMES[] = {"clip", "reinhard"};
-enum { TONEMAP_COUNT = sizeof NAMES / sizeof *NAMES };
+static const name_list TONEMAPS = NAME_LIST("tone map", NAMES);
 
 const char *helio_tonemap_name(helio_tonemap tonemap)
 {
-    return (unsigned)tonemap < TONEMAP_COUNT ? NAMES[tonemap] : "unknown";
+    return name_list_get(&TONEMAPS, (int)tonemap);
 }
 
 helio_status helio_tonemap_parse(const char *name, helio_tonemap *tonemap)
 {
-    if (name == NULL || tonemap == NULL)
-        return fail(HELIO_ERR_ARGUMENT, "helio_tonemap_parse needs a name and a place for the tone map");
-    for (unsigned i = 0; i < TONEMAP_COUNT; i++)
-        if (strcmp(name, NAMES[i]) == 0) {
-            *tonemap = (helio_tonemap)i;
-            return HELIO_OK;
-        }
-    return fail(HELIO_ERR_ARGUMENT, "tone map \"%s\" is unknown; use clip or reinhard", name);
+    int value;
+    HELIO_TRY(name_list_find(&TONEMAPS, tonemap ? name : NULL, &value));
+    *tonemap = (helio_tonemap)value;
+    return HELIO_OK;
 }
 
 /* 0 for NaN. */

@@ -15,8 +15,7 @@ static helio_status resolve_desc(const helio_pools_desc *given, helio_pools_desc
     if (desc->length < LEAST_LENGTH || desc->length > GREATEST_LENGTH || (desc->length & (desc->length - 1)) != 0)
         return fail(HELIO_ERR_ARGUMENT, "a pool of %u samples cannot be made; use a power of two from %d to %d",
                     desc->length, LEAST_LENGTH, GREATEST_LENGTH);
-    if (!strategy_is_valid(desc->strategy))
-        return fail(HELIO_ERR_ARGUMENT, "strategy %d is unknown; use a value of helio_strategy", (int)desc->strategy);
+    HELIO_TRY(strategy_check(desc->strategy));
     desc->strategy = helio_strategy_resolve(desc->strategy);
     return HELIO_OK;
 }

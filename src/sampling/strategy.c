@@ -2,28 +2,45 @@
 #include "sampling/strategy.h"
 
 #include "core/error.h"
+#include "core/name_list.h"
 #include "env/cube.h"
 
-#include <string.h>
+static const char *const NAMES[] = {
+    [HELIO_STRATEGY_AUTO] = "auto",
+    [HELIO_STRATEGY_COSINE] = "cosine",
+    [HELIO_STRATEGY_BRDF] = "brdf",
+    [HELIO_STRATEGY_LIGHT] = "light",
+    [HELIO_STRATEGY_LIGHT_BRDF] = "light+brdf",
+    [HELIO_STRATEGY_FACE] = "face",
+    [HELIO_STRATEGY_FACE_BRDF] = "face+brdf",
+};
+static const name_list STRATEGIES = NAME_LIST("strategy", NAMES);
 
-static const struct {
-    const char *name;
-    strategy_parts parts;
-} strategies[] = {
-    [HELIO_STRATEGY_AUTO] = {"auto", {STRATEGY_LIGHT_FACES, STRATEGY_SURFACE_BRDF}},
-    [HELIO_STRATEGY_COSINE] = {"cosine", {STRATEGY_LIGHT_NONE, STRATEGY_SURFACE_COSINE}},
-    [HELIO_STRATEGY_BRDF] = {"brdf", {STRATEGY_LIGHT_NONE, STRATEGY_SURFACE_BRDF}},
-    [HELIO_STRATEGY_LIGHT] = {"light", {STRATEGY_LIGHT_WHOLE, STRATEGY_SURFACE_NONE}},
-    [HELIO_STRATEGY_LIGHT_BRDF] = {"light+brdf", {STRATEGY_LIGHT_WHOLE, STRATEGY_SURFACE_BRDF}},
-    [HELIO_STRATEGY_FACE] = {"face", {STRATEGY_LIGHT_FACES, STRATEGY_SURFACE_NONE}},
-    [HELIO_STRATEGY_FACE_BRDF] = {"face+brdf", {STRATEGY_LIGHT_FACES, STRATEGY_SURFACE_BRDF}},
+static const strategy_parts PARTS[] = {
+    [HELIO_STRATEGY_COSINE] = {STRATEGY_LIGHT_NONE, STRATEGY_SURFACE_COSINE},
+    [HELIO_STRATEGY_BRDF] = {STRATEGY_LIGHT_NONE, STRATEGY_SURFACE_BRDF},
+    [HELIO_STRATEGY_LIGHT] = {STRATEGY_LIGHT_WHOLE, STRATEGY_SURFACE_NONE},
+    [HELIO_STRATEGY_LIGHT_BRDF] = {STRATEGY_LIGHT_WHOLE, STRATEGY_SURFACE_BRDF},
+    [HELIO_STRATEGY_FACE] = {STRATEGY_LIGHT_FACES, STRATEGY_SURFACE_NONE},
+    [HELIO_STRATEGY_FACE_BRDF] = {STRATEGY_LIGHT_FACES, STRATEGY_SURFACE_BRDF},
 };
 
-enum { STRATEGIES = sizeof strategies / sizeof strategies[0] };
-
-bool strategy_is_valid(helio_strategy strategy)
+const char *helio_strategy_name(helio_strategy strategy)
 {
-    return (int)strategy >= 0 && (int)strategy < STRATEGIES;
+    return name_list_get(&STRATEGIES, (int)strategy);
+}
+
+helio_status helio_strategy_parse(const char *name, helio_strategy *strategy)
+{
+    int value;
+    HELIO_TRY(name_list_find(&STRATEGIES, strategy ? name : NULL, &value));
+    *strategy = (helio_strategy)value;
+    return HELIO_OK;
+}
+
+helio_status strategy_check(helio_strategy strategy)
+{
+    return name_list_check(&STRATEGIES, (int)strategy);
 }
 
 helio_strategy helio_strategy_resolve(helio_strategy strategy)
@@ -33,25 +50,7 @@ helio_strategy helio_strategy_resolve(helio_strategy strategy)
 
 strategy_parts strategy_divide(helio_strategy strategy)
 {
-    return strategies[strategy].parts;
-}
-
-const char *helio_strategy_name(helio_strategy strategy)
-{
-    return strategy_is_valid(strategy) ? strategies[strategy].name : "unknown";
-}
-
-helio_status helio_strategy_parse(const char *name, helio_strategy *strategy)
-{
-    if (name == NULL || strategy == NULL)
-        return fail(HELIO_ERR_ARGUMENT, "helio_strategy_parse needs a name and a place for the strategy");
-    for (int i = 0; i < STRATEGIES; i++)
-        if (strcmp(name, strategies[i].name) == 0) {
-            *strategy = (helio_strategy)i;
-            return HELIO_OK;
-        }
-    return fail(HELIO_ERR_ARGUMENT,
-                "strategy '%s' is unknown; choose auto, cosine, brdf, light, light+brdf, face or face+brdf", name);
+    return PARTS[helio_strategy_resolve(strategy)];
 }
 
 float strategy_beta(uint32_t face, vec3 normal)

@@ -28,8 +28,11 @@ typedef struct strategy_parts {
 /* helio_counts: entries 0..5 are light techniques, this one is the surface technique. */
 enum { TECHNIQUE_SURFACE = 6, TECHNIQUES = 7 };
 
+/* The parts of a strategy; AUTO is resolved. */
 strategy_parts strategy_divide(helio_strategy strategy);
-bool strategy_is_valid(helio_strategy strategy);
+
+/* HELIO_ERR_ARGUMENT for a value that is no strategy. */
+helio_status strategy_check(helio_strategy strategy);
 
 /* How much, at most, a face of the cube can light a surface with this normal (in the map's space): the largest cosine,
  * times the distance, over the face's corners. Continuous in the normal; 0 exactly when the whole face is below the

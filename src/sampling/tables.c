@@ -7,9 +7,8 @@
 
 #include "core/context.h"
 #include "core/error.h"
+#include "core/name_list.h"
 #include "core/random.h"
-
-#include <string.h>
 
 /* A row of the table holds R integers below 2^summand_bits; their sum, rounding included, stays below 2^32. */
 static int summand_bits(uint32_t count)
@@ -22,23 +21,20 @@ static int summand_bits(uint32_t count)
 
 /* ---- creation ---- */
 
-static const char *const weighting_names[] = {"solid-angle", "paper"};
+static const char *const NAMES[] = {"solid-angle", "paper"};
+static const name_list WEIGHTINGS = NAME_LIST("weighting", NAMES);
 
 const char *helio_weighting_name(helio_weighting weighting)
 {
-    return weighting == HELIO_WEIGHTING_PAPER ? weighting_names[1] : weighting_names[0];
+    return name_list_get(&WEIGHTINGS, (int)weighting);
 }
 
 helio_status helio_weighting_parse(const char *name, helio_weighting *weighting)
 {
-    if (name == NULL || weighting == NULL)
-        return fail(HELIO_ERR_ARGUMENT, "helio_weighting_parse needs a name and a place for the weighting");
-    for (int i = 0; i < 2; i++)
-        if (strcmp(name, weighting_names[i]) == 0) {
-            *weighting = (helio_weighting)i;
-            return HELIO_OK;
-        }
-    return fail(HELIO_ERR_ARGUMENT, "weighting '%s' is unknown; choose solid-angle or paper", name);
+    int value;
+    HELIO_TRY(name_list_find(&WEIGHTINGS, weighting ? name : NULL, &value));
+    *weighting = (helio_weighting)value;
+    return HELIO_OK;
 }
 
 helio_status helio_tables_create(helio_environment *environment, helio_weighting weighting, helio_tables **out)
@@ -47,8 +43,7 @@ helio_status helio_tables_create(helio_environment *environment, helio_weighting
         *out = NULL;
     if (environment == NULL || out == NULL)
         return fail(HELIO_ERR_ARGUMENT, "helio_tables_create needs an environment and a place for the result");
-    if (weighting != HELIO_WEIGHTING_SOLID_ANGLE && weighting != HELIO_WEIGHTING_PAPER)
-        return fail(HELIO_ERR_ARGUMENT, "weighting %d is unknown; use a value of helio_weighting", (int)weighting);
+    HELIO_TRY(name_list_check(&WEIGHTINGS, (int)weighting));
     helio_context *context = environment->context;
     helio_tables *tables = context_allocate(context, 1, sizeof *tables);
     if (tables == NULL)

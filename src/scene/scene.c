@@ -3,11 +3,11 @@
 
 #include "core/context.h"
 #include "core/error.h"
+#include "core/name_list.h"
 #include "scene/material.h"
 #include "scene/mesh.h"
 
 #include <float.h>
-#include <string.h>
 
 /* Hits of the ground beyond this, within a hair of the horizon, count as misses: their squares would not fit a float. */
 #define GROUND_REACH 1e15f
@@ -16,23 +16,20 @@
  * themselves, with 4 they find none. */
 #define OFFSET_ROUNDINGS 16.0f
 
-static const char *const ground_names[] = {"none", "plane", "shadow"};
+static const char *const NAMES[] = {"none", "plane", "shadow"};
+static const name_list GROUNDS = NAME_LIST("ground", NAMES);
 
 const char *helio_ground_name(helio_ground ground)
 {
-    return ground >= HELIO_GROUND_NONE && ground <= HELIO_GROUND_SHADOW ? ground_names[ground] : "unknown ground";
+    return name_list_get(&GROUNDS, (int)ground);
 }
 
 helio_status helio_ground_parse(const char *name, helio_ground *ground)
 {
-    if (name == NULL || ground == NULL)
-        return fail(HELIO_ERR_ARGUMENT, "helio_ground_parse needs a name and a place for the ground");
-    for (int i = HELIO_GROUND_NONE; i <= HELIO_GROUND_SHADOW; i++)
-        if (strcmp(name, ground_names[i]) == 0) {
-            *ground = (helio_ground)i;
-            return HELIO_OK;
-        }
-    return fail(HELIO_ERR_ARGUMENT, "ground \"%.200s\" is unknown; use none, plane or shadow", name);
+    int value;
+    HELIO_TRY(name_list_find(&GROUNDS, ground ? name : NULL, &value));
+    *ground = (helio_ground)value;
+    return HELIO_OK;
 }
 
 /* ---- life ---------------------------------------------------------------------------- */
@@ -41,8 +38,7 @@ static helio_status check_desc(const helio_scene_desc *desc)
 {
     if (desc->mesh == NULL)
         return fail(HELIO_ERR_ARGUMENT, "helio_scene_desc has no mesh");
-    if (desc->ground < HELIO_GROUND_NONE || desc->ground > HELIO_GROUND_SHADOW)
-        return fail(HELIO_ERR_ARGUMENT, "ground %d is unknown; use a helio_ground", (int)desc->ground);
+    HELIO_TRY(name_list_check(&GROUNDS, (int)desc->ground));
     return desc->material ? helio_material_check(desc->material) : HELIO_OK;
 }
 
