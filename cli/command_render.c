@@ -25,6 +25,7 @@ typedef struct render_job {
     float exposure; /* stops */
     uint32_t passes;
     stats_frame frame;
+    bool failure_told; /* the sentence about what failed is printed already */
 } render_job;
 
 static void print_log(void *user, helio_log_level level, const char *message)
@@ -68,29 +69,41 @@ static void note_light(stats_frame *frame, const helio_environment_info *light, 
         frame->flux += light->flux[face];
 }
 
+/* What the option says, else the file, else the shape. */
+static helio_status choose_layout(render_job *job, const environment_pixels *pixels, helio_layout *layout)
+{
+    helio_layout wanted = pixels->image != NULL ? job->plan.layout : HELIO_LAYOUT_AUTO;
+    if (wanted == HELIO_LAYOUT_AUTO)
+        wanted = pixels->layout;
+    helio_status status = helio_layout_guess(pixels->width, pixels->height, wanted, layout);
+    if (status != HELIO_OK) {
+        message_failure("%s: %s (--layout)", job->plan.source.label, helio_last_error());
+        job->failure_told = true;
+    }
+    return status;
+}
+
 static helio_status make_environment(render_job *job, const environment_pixels *pixels)
 {
     const cli_options *options = job->plan.options;
     helio_environment_desc desc = {.cube_size = options->env_size, .width = pixels->width, .height = pixels->height};
-    desc.layout = pixels->image != NULL ? job->plan.layout : HELIO_LAYOUT_AUTO;
-    helio_status status = HELIO_OK;
-    if (desc.layout == HELIO_LAYOUT_AUTO)
-        status = helio_layout_guess(pixels->width, pixels->height, pixels->layout, &desc.layout);
-    if (status == HELIO_OK)
-        status = helio_environment_create(job->context, &desc, &job->environment);
+    helio_status status = choose_layout(job, pixels, &desc.layout);
     double start = machine_milliseconds();
     if (status == HELIO_OK)
+        status = helio_environment_create(job->context, &desc, &job->environment);
+    double created = machine_milliseconds();
+    if (status == HELIO_OK)
         status = helio_environment_update(job->environment, pixels->rgb, &job->light);
-    job->frame.cube_ms = machine_milliseconds() - start;
+    job->frame.cube_ms = machine_milliseconds() - created;
     helio_orientation orientation = {
         .rotate = (float)options->rotate, .flip = options->flip, .intensity = (float)options->intensity};
     if (status == HELIO_OK)
         status = helio_environment_orient(job->environment, &orientation);
     if (status == HELIO_OK && job->verbose)
-        message_note("%s: %" PRIu32 "x%" PRIu32 " pixels, layout %s, read in %.0f ms, turned into a cube of %" PRIu32
-                     " texels in %.0f ms",
+        message_note("%s: %" PRIu32 "x%" PRIu32 " pixels, layout %s, read in %.0f ms; a cube of %" PRIu32
+                     " texels prepared in %.0f ms, filled in %.0f ms",
                      job->plan.source.label, pixels->width, pixels->height, helio_layout_name(desc.layout),
-                     job->frame.source_ms, options->env_size, job->frame.cube_ms);
+                     job->frame.source_ms, options->env_size, created - start, job->frame.cube_ms);
     return status;
 }
 
@@ -224,8 +237,7 @@ static int run_job(render_job *job)
                                                   make_renderer, render_frame,     write_picture};
     double start = machine_milliseconds();
     for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
-        /* A signal may also be why a step failed: it reaches child processes of the library too. Once the picture is
-         * written, it is too late to stop. */
+        /* A signal may also be why a step failed. Once the picture is written, it is too late to stop. */
         bool good = interrupt_signal() == 0 && steps[i](job);
         bool is_written = good && steps[i] == write_picture;
         if (interrupt_signal() != 0 && !is_written) {
@@ -233,7 +245,7 @@ static int run_job(render_job *job)
             return EXIT_CODE_SIGNAL + interrupt_signal();
         }
         if (!good)
-            return message_failure("%s", helio_last_error());
+            return job->failure_told ? EXIT_CODE_FAILED : message_failure("%s", helio_last_error());
     }
     int code = write_stats(job);
     if (code == EXIT_CODE_OK && !job->plan.options->quiet)

@@ -61,7 +61,7 @@ static const help_entry exit_codes[] = {
     {"0", "the work is done"},
     {"1", "it failed: one sentence on stderr says why, and no half-written file is left"},
     {"2", "the command line is wrong; nothing was read or written"},
-    {"130", "Ctrl-C stopped it; nothing was written"},
+    {"130", "Ctrl-C stopped it; nothing was written (143: SIGTERM, 129: SIGHUP)"},
 };
 const help_section help_exit_codes = {"Exit status", exit_codes, COUNT(exit_codes)};
 

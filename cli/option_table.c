@@ -30,7 +30,8 @@ const cli_option option_table[] = {
      .initial = "512",
      .minimum = 1,
      .maximum = 4096,
-     .help = "texels along the edge of each of the six cube faces that the map is turned into",
+     .help = "texels along the edge of each of the six cube faces that the map is turned into; more also sharpen the "
+             "background",
      .kind = OPTION_WHOLE,
      MEMBER(env_size),
      RENDER(GROUP_ENVIRONMENT)},
@@ -140,7 +141,7 @@ const cli_option option_table[] = {
      .argument = "D",
      .initial = "hash",
      .choices = "hash none",
-     .help = "how neighbouring pixels get different samples; none shows bands instead of noise",
+     .help = "how neighbouring pixels get different samples; none shows bands and steps instead of noise",
      .kind = OPTION_CHOICE,
      MEMBER(decorrelate),
      RENDER(GROUP_SAMPLING)},

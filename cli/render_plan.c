@@ -66,8 +66,9 @@ static bool has_extension(const char *path, const char *extension)
     return dot != NULL && strcasecmp(dot + 1, extension) == 0;
 }
 
-static int check_output(const cli_options *options)
+static int check_output(const render_plan *plan)
 {
+    const cli_options *options = plan->options;
     const char *percent = strchr(options->out, '%');
     if (percent != NULL && percent[1 + strspn(percent + 1, "0123456789")] == 'd')
         return message_usage("--out %s names a sequence, which is not in this version; name one picture", options->out);
@@ -76,6 +77,8 @@ static int check_output(const cli_options *options)
     if (options->aovs && !has_extension(options->out, "exr"))
         return message_usage("--aovs writes layers, which only EXR holds; give --out a name that ends in .exr, not %s",
                              options->out);
+    if (plan->alpha && has_extension(options->out, "pfm"))
+        message_warning("%s cannot hold the alpha channel of this picture; EXR and PNG can", options->out);
     if (options->stats != NULL && is(options->stats, options->out))
         return message_usage("--stats and --out both name %s; give two files", options->out);
     return EXIT_CODE_OK;
@@ -140,7 +143,7 @@ int render_plan_make(render_plan *plan, const cli_options *options)
     if (code == EXIT_CODE_OK)
         code = check_scene(plan);
     if (code == EXIT_CODE_OK)
-        code = check_output(options);
+        code = check_output(plan);
     if (code == EXIT_CODE_OK)
         code = environment_source_parse(options->env, &plan->source);
     if (code == EXIT_CODE_OK)

@@ -322,6 +322,29 @@ static void face_coordinates_and_directions_are_inverse(void **state)
         }
 }
 
+/* A direction on the border between two texels, or an ulp beside it, belongs to one of the two. */
+static void borders_of_texels_belong_to_a_neighbour(void **state)
+{
+    (void)state;
+    const uint32_t sizes[] = {1, 2, 3, 16, 512};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
+        for (uint32_t k = 0; k <= sizes[i]; k++)
+            for (uint32_t face = 0; face < 6; face++)
+                for (int ulps = -1; ulps <= 1; ulps++) {
+                    float border = 2.0f * (float)k / (float)sizes[i] - 1.0f;
+                    float u = ulps == 0 ? border : nextafterf(border, (float)ulps);
+                    if (fabsf(u) > 0.999f) /* edges of the face may go to another face: see above */
+                        continue;
+                    cube_position across = cube_project(cube_direction(face, u, 0.25f));
+                    cube_position down = cube_project(cube_direction(face, 0.25f, u));
+                    assert_int_equal(across.face, face);
+                    assert_int_equal(down.face, face);
+                    uint32_t column = cube_texel(across.u, sizes[i]), row = cube_texel(down.v, sizes[i]);
+                    assert_true(column + 1 == k || column == k);
+                    assert_true(row + 1 == k || row == k);
+                }
+}
+
 static void centres_of_texels_are_found_again(void **state)
 {
     (void)state;
@@ -1289,6 +1312,7 @@ int main(void)
         cmocka_unit_test(solid_angles_equal_their_quadrature),
         cmocka_unit_test(faces_are_oriented_as_in_the_vulkan_table),
         cmocka_unit_test(face_coordinates_and_directions_are_inverse),
+        cmocka_unit_test(borders_of_texels_belong_to_a_neighbour),
         cmocka_unit_test(centres_of_texels_are_found_again),
         cmocka_unit_test(texel_indices_stay_in_range),
         cmocka_unit_test(odd_directions_find_some_texel),

@@ -300,6 +300,77 @@ static void unbiased_face_brdf_uneven_share(void **state)
                    &(helio_estimate_desc){.brdf_share = 0.15f, .samples = 7});
 }
 
+/* ---- drawn samples against their density ---- */
+
+enum { BINS = 6 * 8 * 8, CELLS = 12 }; /* texels of a cube of size 8; quadrature cells along a texel's edge */
+
+/* Samples that each texel should get from one estimate: integral of sum_k m_k pdf_k. */
+static void expect_bins(const world *w, const helio_shading_point *point, const helio_counts *counts,
+                        double expected[BINS])
+{
+    const helio_environment *environment = w->environment;
+    vec3 normal = environment_to_map(environment, vec3_from(point->normal));
+    vec3 view = brdf_lift_view(normal, environment_to_map(environment, vec3_from(point->view)));
+    brdf surface = brdf_prepare(&point->material, normal, view);
+    double cell = 2.0 / (8 * CELLS);
+    memset(expected, 0, BINS * sizeof *expected);
+    for (uint32_t face = 0; face < 6; face++)
+        for (uint32_t y = 0; y < 8 * CELLS; y++)
+            for (uint32_t x = 0; x < 8 * CELLS; x++) {
+                double u = (x + 0.5) * cell - 1, v = (y + 0.5) * cell - 1, radius2 = 1 + u * u + v * v;
+                vec3 direction = cube_direction(face, (float)u, (float)v);
+                expected[(face * 8 + y / CELLS) * 8 + x / CELLS] +=
+                    strategy_density(w, counts, &surface, direction) * cell * cell / (radius2 * sqrt(radius2));
+            }
+}
+
+/* Everything together: pools, windows, rounding of counts, scrambled points, lobes. Stratified samples spread more evenly
+ * than independent ones, so the statistic errs on the side of passing; a wrong density still stands out. */
+static void samples_follow_their_density_for_every_strategy_and_material(void **state)
+{
+    (void)state;
+    static test_map maps[MAPS];
+    const helio_material *materials[MATERIALS] = {&matte, &glossy, &metal};
+    helio_context *context = make_context(1, NULL);
+    make_maps(maps);
+    for (int s = 0; s < STRATEGIES; s++)
+        for (int m = 0; m < MATERIALS; m++) {
+            world w = make_world(context, &maps[4], HELIO_WEIGHTING_SOLID_ANGLE, strategies[s], 256);
+            helio_shading_point points[POINTS];
+            make_points(points);
+            helio_shading_point point = points[MATERIALS]; /* tilted, seen from the side */
+            point.material = *materials[m];
+            double observed[BINS] = {0}, expected[BINS];
+            helio_counts counts;
+            assert_ok(helio_count(w.pools, &point, NULL, &counts));
+            expect_bins(&w, &point, &counts, expected);
+            const uint32_t seeds = 2000;
+            for (uint32_t seed = 0; seed < seeds; seed++) {
+                helio_sample samples[64];
+                uint32_t count;
+                point.seed = seed;
+                assert_ok(helio_pools_draw(w.pools, seed, 0));
+                assert_ok(helio_gather(w.pools, &point, NULL, samples, &count));
+                assert_int_equal(count, 32);
+                for (uint32_t i = 0; i < count; i++) {
+                    cube_position at = cube_project(environment_to_map(w.environment, vec3_from(samples[i].direction)));
+                    observed[(at.face * 8 + cube_texel(at.v, 8)) * 8 + cube_texel(at.u, 8)] += 1;
+                }
+            }
+            double sum = 0;
+            for (int i = 0; i < BINS; i++) {
+                sum += expected[i];
+                expected[i] *= seeds;
+            }
+            assert_true(fabs(sum - 32) < 0.05); /* quadrature of lobes: a fraction of a per cent */
+            double p = chi_square_tail(observed, expected, BINS, 1);
+            if (p < 1e-9)
+                fail_msg("%s, material %d: p = %g", helio_strategy_name(strategies[s]), m, p);
+            destroy_world(&w);
+        }
+    helio_context_destroy(context);
+}
+
 /* ---- convergence ---- */
 
 /* Means over more and more redrawn pools. All strategies go to the same value, at the rate of Monte Carlo or faster. */
@@ -549,7 +620,7 @@ static void beta_makes_counts_continuous(void **state)
         helio_counts before = {0}, counts;
         for (int step = 0; step <= 20000; step++) {
             double angle = 2 * PI * step / 20000;
-            helio_shading_point point = facing((vec3){(float)cos(angle), 0.1f, (float)sin(angle)});
+            helio_shading_point point = facing(normalize((vec3){(float)cos(angle), 0.1f, (float)sin(angle)}));
             assert_ok(helio_count(w.pools, &point, &(helio_estimate_desc){.no_beta = no_beta}, &counts));
             for (int face = 0; face < 6 && step > 0; face++)
                 largest[no_beta] =
@@ -709,7 +780,25 @@ static void wrong_use_is_refused_with_a_sentence(void **state)
     assert_int_equal(helio_estimate(w.pools, &point, &(helio_estimate_desc){.brdf_share = 1.0f}, radiance, NULL),
                      HELIO_ERR_ARGUMENT);
     assert_int_equal(helio_estimate(NULL, &point, NULL, radiance, NULL), HELIO_ERR_ARGUMENT);
+    assert_int_equal(helio_estimate(w.pools, NULL, NULL, radiance, NULL), HELIO_ERR_ARGUMENT);
+    helio_shading_point wrong = point;
+    wrong.normal[1] = 2.0f;
+    assert_int_equal(helio_estimate(w.pools, &wrong, NULL, radiance, NULL), HELIO_ERR_ARGUMENT);
+    assert_non_null(strstr(helio_last_error(), "length 2"));
+    wrong = point;
+    wrong.view[0] = NAN;
+    assert_int_equal(helio_estimate(w.pools, &wrong, NULL, radiance, NULL), HELIO_ERR_ARGUMENT);
+    wrong = point;
+    wrong.material.diffuse[0] = 2.0f;
+    assert_int_equal(helio_estimate(w.pools, &wrong, NULL, radiance, NULL), HELIO_ERR_ARGUMENT);
     assert_true(radiance[0] == 5.0f);
+    /* Without a geometric normal the normal stands for both. */
+    float other[3];
+    wrong = point;
+    memset(wrong.geometric_normal, 0, sizeof wrong.geometric_normal);
+    assert_ok(helio_estimate(w.pools, &point, NULL, radiance, NULL));
+    assert_ok(helio_estimate(w.pools, &wrong, NULL, other, NULL));
+    assert_memory_equal(radiance, other, sizeof other);
     /* A new frame makes tables and pools stale; light of one frame never comes from the tables of another. */
     assert_ok(helio_environment_update(w.environment, maps[0].pixels, NULL));
     assert_int_equal(helio_estimate(w.pools, &point, NULL, radiance, NULL), HELIO_ERR_ARGUMENT);
@@ -734,6 +823,7 @@ int main(void)
         cmocka_unit_test(unbiased_face_paper_weighting_without_beta),
         cmocka_unit_test(unbiased_face_brdf),
         cmocka_unit_test(unbiased_face_brdf_uneven_share),
+        cmocka_unit_test(samples_follow_their_density_for_every_strategy_and_material),
         cmocka_unit_test(all_strategies_converge_beyond_the_pools),
         cmocka_unit_test(a_matte_furnace_returns_its_albedo),
         cmocka_unit_test(other_furnaces_return_their_quadrature_and_no_more_than_one),

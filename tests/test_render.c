@@ -281,6 +281,53 @@ static void camera_samples_smooth_edges_and_share_passes(void **state)
     helio_context_destroy(context);
 }
 
+/* The supplement's Figure 1, as a test: along a row of pixels over a sphere under a low sun, the noise of neighbouring pixels
+ * differs by a step where the sun's face dips below the horizon, unless beta fades its samples out. */
+static void beta_leaves_no_step_in_the_noise(void **state)
+{
+    (void)state;
+    enum { SEEDS = 400 };
+    helio_context *context = make_context(2, NULL);
+    float map[MAP_HEIGHT][MAP_WIDTH][3];
+    fill_map(map, 0.5f, 0.5f, 0.5f);
+    map[7][16][0] = map[7][16][1] = map[7][16][2] = 600.0f; /* low, towards +Z: most of the light */
+    double steps[2];
+    for (int no_beta = 0; no_beta < 2; no_beta++) {
+        setup s = make_setup(context, make_sphere, &white, HELIO_GROUND_NONE, map,
+                             (helio_renderer_desc){.strategy = HELIO_STRATEGY_FACE,
+                                                   .spp = 16,
+                                                   .width = 96,
+                                                   .height = 32,
+                                                   .no_visibility = true,
+                                                   .no_beta = no_beta});
+        /* From behind and the side: in the middle of the row is the normal whose horizon the face +Z just touches. */
+        assert_ok(helio_camera_parse("lookat:eye=-8,1,-8,at=0,1,0,fov=1.07", s.mesh, 3.0f, &s.camera));
+        double sum[96] = {0}, sum2[96] = {0};
+        for (uint32_t seed = 0; seed < SEEDS; seed++) {
+            helio_picture picture = render(&s, seed, NULL);
+            for (int x = 0; x < 96; x++) {
+                double light = (double)picture.rgba[(16 * 96 + x) * 4];
+                sum[x] += light;
+                sum2[x] += light * light;
+            }
+        }
+        steps[no_beta] = 0;
+        for (int x = 4; x <= 92; x++) { /* compares means over four pixels, 1.6 degrees, on either side */
+            double left = 0, right = 0;
+            for (int i = 1; i <= 4; i++) {
+                left += sqrt(sum2[x - i] / SEEDS - pow(sum[x - i] / SEEDS, 2)) / 4;
+                right += sqrt(sum2[x + i - 1] / SEEDS - pow(sum[x + i - 1] / SEEDS, 2)) / 4;
+            }
+            steps[no_beta] = fmax(steps[no_beta], fabs(log(left / right)));
+        }
+        destroy_setup(&s);
+    }
+    print_message("largest step of the noise: factor %.2f with beta, %.2f without\n", exp(steps[0]), exp(steps[1]));
+    assert_true(exp(steps[0]) < 1.5);
+    assert_true(exp(steps[1]) > 1.8);
+    helio_context_destroy(context);
+}
+
 /* ---- shadows and alpha ---- */
 
 static float alpha_at(const helio_picture *picture, int x, int y)
@@ -638,6 +685,7 @@ int main(void)
         cmocka_unit_test(all_strategies_agree_with_shadows_on_each_material),
         cmocka_unit_test(samples_beyond_the_pools_take_more_passes_and_converge),
         cmocka_unit_test(camera_samples_smooth_edges_and_share_passes),
+        cmocka_unit_test(beta_leaves_no_step_in_the_noise),
         cmocka_unit_test(the_plane_is_darker_where_the_box_hides_the_sun),
         cmocka_unit_test(the_shadow_catcher_keeps_only_the_shadow),
         cmocka_unit_test(alpha_is_coverage_without_a_background),

@@ -69,8 +69,10 @@ typedef enum helio_log_level {
 typedef void (*helio_loop_body)(void *data, size_t index);
 
 typedef struct helio_context_desc {
-    uint32_t threads;          /* threads of the built-in pool, the caller's included, 1..1024; default: one per
-                                  logical core. With a parallel_for of your own: how many it uses, if you know. */
+    /* Threads of the built-in pool, the caller's included, 1..1024; default: one per logical core that the process may
+     * use. With a parallel_for of your own: how many it uses, if you know. */
+    uint32_t threads;
+
     helio_log_level log_level; /* messages above this level are dropped; default: errors only */
 
     /* Receives one line without a newline; may be called from any thread, one call at a time. Default: stderr. */

@@ -2,11 +2,12 @@
  *
  * environment.h - this frame's environment map as a cube: 6 faces of R x R texels of linear RGB.
  *
- * Faces come in the order +X -X +Y -Y +Z -Z, each oriented as in the Vulkan and OpenGL cube map tables. A direction d with
- * major axis ma has face coordinates u = sc / |ma|, v = tc / |ma| in [-1, 1]; column = floor((u + 1) / 2 R), row likewise
- * from v, both at most R - 1. Lighting takes a texel as constant over its area.
+ * Faces come in the order +X -X +Y -Y +Z -Z, each oriented as in the Vulkan and OpenGL cube map tables. A direction d
+ * with major axis ma has face coordinates u = sc / |ma|, v = tc / |ma| in [-1, 1]; column = floor((u + 1) / 2 R), row
+ * likewise from v, both at most R - 1. Lighting takes a texel as constant over its area.
  *
- * Each update starts a new frame: helio_environment_frame() counts them, and tables and pools know which they belong to.
+ * Each update starts a new frame: helio_environment_frame() counts them, and tables and pools know which they belong
+ * to.
  */
 #ifndef HELIOSTAT_ENVIRONMENT_H
 #define HELIOSTAT_ENVIRONMENT_H
@@ -26,8 +27,8 @@ typedef struct helio_environment_desc {
     helio_layout layout;    /* their layout; default: guessed from the shape, see helio_layout_guess() */
 } helio_environment_desc;
 
-/* What one update saw. A channel that is NaN or Inf makes its pixel 0; a negative channel becomes 0. Channels beyond 1e30 in
- * magnitude count as infinite: no light is that bright, and sums of such numbers would not fit a float. */
+/* What one update saw. A channel that is NaN or Inf makes its pixel 0; a negative channel becomes 0. Channels beyond
+ * 1e30 in magnitude count as infinite: no light is that bright, and sums of such numbers would not fit a float. */
 typedef struct helio_environment_info {
     uint64_t nan;          /* pixels of the map with a NaN channel */
     uint64_t infinite;     /* pixels with a channel that is infinite or above 1e30, and none NaN */

@@ -11,7 +11,7 @@
 extern "C" {
 #endif
 
-/* How the pixels of an environment map are laid over the sphere. docs/conventions.md has pictures. */
+/* How the pixels of an environment map are laid over the sphere. docs/conventions.md has the axes. */
 typedef enum helio_layout {
     HELIO_LAYOUT_AUTO = 0,      /* guess from the file's metadata and from its shape */
     HELIO_LAYOUT_LATLONG,       /* OpenEXR's axes: top row +Y, centre column +Z, a quarter from the left +X */
@@ -26,7 +26,8 @@ HELIO_API const char *helio_layout_name(helio_layout layout);
 HELIO_API helio_status helio_layout_parse(const char *name, helio_layout *layout);
 
 /* What layout a picture of this shape has. hint: what metadata says, or AUTO. HELIO_ERR_DATA, with the choices, where
- * the shape does not tell: a lat-long map is twice as wide as high (within 1 %), a strip 6:1 or 1:6; 1x1 is constant. */
+ * the shape does not tell: a lat-long map is twice as wide as high (within 1 %), a strip 6:1 or 1:6; 1x1 is constant.
+ */
 HELIO_API helio_status helio_layout_guess(uint32_t width, uint32_t height, helio_layout hint, helio_layout *layout);
 
 /* A picture that was read. Own it through helio_image_destroy(). */

@@ -46,8 +46,8 @@ typedef struct helio_renderer_desc {
 typedef struct helio_frame_desc {
     helio_camera camera; /* required */
     uint32_t seed;
-    /* Called now and then on the calling thread with the part done, 0..1. false stops the frame: HELIO_OK is returned and
-     * each pixel holds the samples that it got so far (none: black, alpha 0). Default: none. */
+    /* Called now and then on the calling thread with the part done, 0..1. false stops the frame: HELIO_OK is returned
+     * and each pixel holds the samples that it got so far (none: black, alpha 0). Default: none. */
     bool (*progress)(void *user, float done);
     void *user;
 } helio_frame_desc;
@@ -67,8 +67,8 @@ HELIO_API helio_status helio_renderer_create(helio_context *context, const helio
                                              helio_renderer **renderer);
 HELIO_API void helio_renderer_destroy(helio_renderer *renderer);
 
-/* Renders the environment's current frame: tables, then for each pass pools, camera rays and shading. The same seed gives
- * the same bits on any number of threads. info may be NULL. */
+/* Renders the environment's current frame: tables, then for each pass pools, camera rays and shading. The same seed
+ * gives the same bits on any number of threads. info may be NULL. */
 HELIO_API helio_status helio_renderer_render(helio_renderer *renderer, const helio_frame_desc *desc,
                                              helio_frame_info *info);
 

@@ -36,8 +36,8 @@ HELIO_API helio_status helio_tables_create(helio_environment *environment, helio
                                            helio_tables **tables);
 HELIO_API void helio_tables_destroy(helio_tables *tables);
 
-/* Builds the tables of the environment's current frame: for each face, uint32 prefix sums along the rows and over the row
- * sums. Integer sums are exact, so equal cubes give equal bits on any machine and any number of threads. */
+/* Builds the tables of the environment's current frame: for each face, uint32 prefix sums along the rows and over the
+ * row sums. Integer sums are exact, so equal cubes give equal bits on any machine and any number of threads. */
 HELIO_API helio_status helio_tables_update(helio_tables *tables);
 
 /* The frame (helio_environment_frame) that the tables belong to; 0 before the first update. */
@@ -52,13 +52,14 @@ typedef struct helio_table_sample {
 } helio_table_sample;
 
 /* Inverts the CDF of a face (0..5): v picks the row, u the column, each in [0, 1). false, and nothing written, if the
- * face is black. u and v carry 24 bits: cells less probable than 2^-24 may be missed near 1 (pools draw with 32 bits). Call
- * helio_tables_update() after each update of the environment, or radiance and density belong to different frames. */
+ * face is black. u and v carry 24 bits: cells less probable than 2^-24 may be missed near 1 (pools draw with 32 bits).
+ * Call helio_tables_update() after each update of the environment, or radiance and density belong to different frames.
+ */
 HELIO_API bool helio_tables_sample(const helio_tables *tables, uint32_t face, float u, float v,
                                    helio_table_sample *sample);
 
-/* The density with which helio_tables_sample() picks this direction, given its face: the same function of the same stored
- * numbers. face receives the face that holds the direction; may be NULL. 0 where the map is black. */
+/* The density with which helio_tables_sample() picks this direction, given its face: the same function of the same
+ * stored numbers. face receives the face that holds the direction; may be NULL. 0 where the map is black. */
 HELIO_API float helio_tables_density(const helio_tables *tables, const float direction[3], uint32_t *face);
 
 /* Flux of each face, integral of luminance, as the tables have it: radiance unit x sr. */
@@ -115,10 +116,12 @@ HELIO_API uint32_t helio_pools_sample_limit(const helio_pools *pools);
 
 /* ---- shading points ------------------------------------------------------------------ */
 
+/* Directions must have unit length (to 1e-3) and the material must pass helio_material_check(): helio_count(),
+ * helio_gather() and helio_estimate() answer HELIO_ERR_ARGUMENT otherwise. */
 typedef struct helio_shading_point {
     float position[3];         /* metres; only handed to the visibility function */
     float normal[3];           /* shading normal, on the viewer's side of the surface */
-    float geometric_normal[3]; /* of the flat surface, likewise; light from below it is not counted */
+    float geometric_normal[3]; /* of the flat surface, likewise; light from below it is not counted. Default: normal */
     float view[3]; /* towards the eye. Where normal . view < 1e-3, view is moved along the normal until it is
                                   1e-3: the one rule for grazing views, for all materials. */
     helio_material material;
@@ -138,8 +141,8 @@ typedef struct helio_estimate_desc {
     void *user;                  /* handed to visibility */
 } helio_estimate_desc;
 
-/* Expected counts m and realised counts of the techniques that share N_s: faces 0..5 (FACE), or the whole map in entry 0
- * (LIGHT), and the BRDF or cosine technique in entry 6. */
+/* Expected counts m and realised counts of the techniques that share N_s: faces 0..5 (FACE), or the whole map in entry
+ * 0 (LIGHT), and the BRDF or cosine technique in entry 6. */
 typedef struct helio_counts {
     float expected[7];
     uint32_t realised[7]; /* sums to N_s exactly, or to 0 if there is no light to sample */
@@ -158,7 +161,8 @@ HELIO_API helio_status helio_count(const helio_pools *pools, const helio_shading
                                    const helio_estimate_desc *desc, helio_counts *counts);
 
 /* Writes N_s samples (or none, where there is no light) for hosts that trace or shadow-map them themselves.
- * samples: [desc->samples]. visibility is not called. count receives how many were written. desc may be NULL. */
+ * samples: [desc->samples], or [64] where desc is NULL or leaves samples at 0. visibility is not called. count receives
+ * how many were written. */
 HELIO_API helio_status helio_gather(const helio_pools *pools, const helio_shading_point *point,
                                     const helio_estimate_desc *desc, helio_sample *samples, uint32_t *count);
 
@@ -168,20 +172,20 @@ typedef struct helio_estimate_info {
     uint32_t rays;    /* visibility tests */
 } helio_estimate_info;
 
-/* The radiance that leaves the point towards the eye by direct light from the environment, with orientation and intensity.
- * Unbiased for any strategy. desc and info may be NULL. */
+/* The radiance that leaves the point towards the eye by direct light from the environment, with orientation and
+ * intensity. Unbiased for any strategy. desc and info may be NULL. */
 HELIO_API helio_status helio_estimate(const helio_pools *pools, const helio_shading_point *point,
                                       const helio_estimate_desc *desc, float radiance[3], helio_estimate_info *info);
 
 /* ---- BRDFs ---------------------------------------------------------------------------- */
 
-/* BRDF value, 1/sr, [3]; 0 where either direction is below the normal. view is as given: the rule for grazing views is the
- * caller's (see helio_shading_point). */
+/* BRDF value, 1/sr, [3]; 0 where either direction is below the normal. view is as given: the rule for grazing views is
+ * the caller's (see helio_shading_point). */
 HELIO_API void helio_brdf_value(const helio_material *material, const float normal[3], const float view[3],
                                 const float light[3], float value[3]);
 
-/* Draws a light direction for view; u: [3] in [0, 1). The direction may lie below the normal: it then counts as a sample
- * without light. Returns its density (the same function as helio_brdf_density). */
+/* Draws a light direction for view; u: [3] in [0, 1). The direction may lie below the normal: it then counts as a
+ * sample without light. Returns its density (the same function as helio_brdf_density). */
 HELIO_API float helio_brdf_sample(const helio_material *material, const float normal[3], const float view[3],
                                   const float u[3], float light[3]);
 

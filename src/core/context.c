@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/thread_pool.h"
 
+#include <sched.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,9 +39,12 @@ static void default_log(void *user, helio_log_level level, const char *message)
     fprintf(stderr, "heliostat: %s: %s\n", names[level], message);
 }
 
+/* Cores that this process may use: in a container often far fewer than the machine has. */
 static uint32_t logical_cores(void)
 {
-    long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    cpu_set_t allowed;
+    long cores =
+        sched_getaffinity(0, sizeof allowed, &allowed) == 0 ? CPU_COUNT(&allowed) : sysconf(_SC_NPROCESSORS_ONLN);
     return cores < 1 ? 1 : cores > MAX_THREADS ? MAX_THREADS : (uint32_t)cores;
 }
 

@@ -7,7 +7,8 @@
 
 enum { CONTEXT_ALIGNMENT = 64 }; /* a cache line, and the widest vector register */
 
-/* Zeroed memory for count elements, or NULL with the last error set. count x size may overflow: that is an error too. */
+/* Zeroed memory for count elements, or NULL with the last error set. count x size may overflow: that is an error too.
+ */
 void *context_allocate(helio_context *context, size_t count, size_t size);
 void context_release(helio_context *context, void *memory); /* NULL is fine */
 

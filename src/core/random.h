@@ -62,8 +62,9 @@ static inline uint32_t sobol(uint32_t index, uint32_t dimension)
     return result;
 }
 
-/* Owen's nested uniform scrambling of a fraction of 2^32, by hash: each bit is flipped by a hash of the bits above it, so
- * that nets stay nets and each point becomes uniform (Laine and Karras 2011, Burley 2020; constants by N. Vegdahl 2021). */
+/* Owen's nested uniform scrambling of a fraction of 2^32, by hash: each bit is flipped by a hash of the bits above it,
+ * so that nets stay nets and each point becomes uniform (Laine and Karras 2011, Burley 2020; constants by N. Vegdahl
+ * 2021). */
 static inline uint32_t owen_scramble(uint32_t x, uint32_t seed)
 {
     x = reverse_bits(x);

@@ -59,7 +59,8 @@ static bool is_key_of(const specification_field *field, const char *token, int k
     return strlen(field->key) == (size_t)key_length && memcmp(field->key, token, (size_t)key_length) == 0;
 }
 
-/* The field that the token names, marked as given; NULL, with the last error set, if there is none or it was given before. */
+/* The field that the token names, marked as given; NULL, with the last error set, if there is none or it was given
+ * before. */
 static specification_field *find_field(const reader *r, int key_length)
 {
     for (size_t i = 0; i < r->field_count; i++) {

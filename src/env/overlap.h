@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * overlap.h - which pixels of a map each texel of the cube covers, and with what share of its solid angle.
  *
- * Each layout has one generator of overlaps. They depend on the shapes alone, so they are found once; a frame only sums. */
+ * Each layout has one generator of overlaps. They depend on the shapes alone, so they are found once; a frame only
+ * sums. */
 #ifndef HELIOSTAT_SRC_OVERLAP_H
 #define HELIOSTAT_SRC_OVERLAP_H
 
@@ -9,7 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* A pixel under a texel. weight: the part of the texel's solid angle that the pixel covers; a texel's weights sum to 1. */
+/* A pixel under a texel. weight: the part of the texel's solid angle that the pixel covers; a texel's weights sum to 1.
+ */
 typedef struct overlap {
     uint32_t row, column; /* of the pixel */
     float weight;

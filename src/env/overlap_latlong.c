@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lat-long maps. Solid angle is d(longitude) d(sin latitude), so in these coordinates pixels are rectangles, and a texel is
- * bounded by its edges, which are great circles:
+ * Lat-long maps. Solid angle is d(longitude) d(sin latitude), so in these coordinates pixels are rectangles, and a
+ * texel is bounded by its edges, which are great circles:
  *
  *   sin(latitude) = k cos t / sqrt(1 - k^2 sin^2 t),   with integral   asin(k sin t),
  *
@@ -12,7 +12,8 @@
 #include "env/cube.h"
 #include "env/overlap.h"
 
-/* Areas below this, in sr, are roundings where nothing overlaps. The least pixel of the largest map is 40 times larger. */
+/* Areas below this, in sr, are roundings where nothing overlaps. The least pixel of the largest map is 40 times larger.
+ */
 static const double LEAST_AREA = 1e-14;
 
 /* Where a texel lies: its longitudes, sines of latitudes, and the longitudes where its edges meet or turn. */
@@ -31,7 +32,8 @@ typedef struct great_circle {
     double sign;      /* -1: the circle's southern half */
 } great_circle;
 
-/* A piece of a circle's half on one side of its highest point, from angle near to far: latitude falls from high to low. */
+/* A piece of a circle's half on one side of its highest point, from angle near to far: latitude falls from high to low.
+ */
 typedef struct circle_piece {
     double k, sign, near, far;
     double high, low;                   /* sin(latitude) at near and far */
@@ -112,7 +114,8 @@ static uint32_t find_row(const overlap_geometry *geometry, double sine)
     return row;
 }
 
-/* Column borders run against the longitude: column c spans longitudes from longitude_of(c + 1) up to longitude_of(c). */
+/* Column borders run against the longitude: column c spans longitudes from longitude_of(c + 1) up to longitude_of(c).
+ */
 static double longitude_of(const overlap_geometry *geometry, double column)
 {
     return (0.5 - column / geometry->map_width) * 2 * PI;

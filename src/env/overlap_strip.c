@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Six faces in a strip: a texel and a pixel overlap in a rectangle of their face, whose solid angle is known exactly. */
+ * Six faces in a strip: a texel and a pixel overlap in a rectangle of their face, whose solid angle is known exactly.
+ */
 #include "env/cube.h"
 #include "env/overlap.h"
 

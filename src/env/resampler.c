@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * All layouts are symmetric: of the overlaps (overlap.h) of a face only one quarter is kept, the texels with u <= 0 and
- * v <= 0, and faces that differ by where they are in the map share it. A strip has one such quarter, a lat-long map two: of a
- * side and of a pole. Each quarter of each face sees the map through a transformation of rows and columns. */
+ * v <= 0, and faces that differ by where they are in the map share it. A strip has one such quarter, a lat-long map
+ * two: of a side and of a pole. Each quarter of each face sees the map through a transformation of rows and columns. */
 #include "env/resampler.h"
 
 #include "core/context.h"
@@ -126,7 +126,8 @@ static face_view view_side(const overlap_list *list, int64_t quarter_turns)
     return view;
 }
 
-/* A pole: mirroring x or z mirrors longitude, both turn it by half. -Y is +Y upside down, in rows of texels and of pixels. */
+/* A pole: mirroring x or z mirrors longitude, both turn it by half. -Y is +Y upside down, in rows of texels and of
+ * pixels. */
 static face_view view_pole(const overlap_list *list, bool south)
 {
     int64_t width = list->geometry.map_width, last_row = list->geometry.map_height - 1;
@@ -196,7 +197,8 @@ static void plan_strip(resampler *plan, uint32_t face_size, bool stacked, bool o
     strip_borders(plan->borders, face_size, openexr);
     const overlap_list *list = add_list(plan, overlap_strip, overlap_strip_bound, face_size, face_size);
     for (uint32_t face = 0; face < CUBE_FACES; face++) {
-        /* OpenEXR draws its faces as seen from outside: the sides mirrored left to right, top and bottom upside down. */
+        /* OpenEXR draws its faces as seen from outside: the sides mirrored left to right, top and bottom upside down.
+         */
         bool is_pole = face == 2 || face == 3;
         plan->faces[face] = view_strip(list, stacked ? face * face_size : 0, stacked ? 0 : face * face_size,
                                        openexr && is_pole, openexr && !is_pole);

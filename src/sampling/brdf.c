@@ -112,8 +112,8 @@ static float ggx_density(const brdf *b, vec3 light)
     return 0.5f * ggx_visibility(b, b->view_cosine) * ggx_distribution(b, half_vector(b, light));
 }
 
-/* Reflects the view about a visible normal, drawn as a point of a spherical cap (Dupuy and Benyoub, "Sampling Visible GGX
- * Normals with Spherical Caps", HPG 2023). */
+/* Reflects the view about a visible normal, drawn as a point of a spherical cap (Dupuy and Benyoub, "Sampling Visible
+ * GGX Normals with Spherical Caps", HPG 2023). */
 static vec3 sample_ggx(const brdf *b, float u, float v)
 {
     float alpha = sqrtf(b->alpha2);
@@ -140,7 +140,8 @@ static float phong_lobe(const brdf *b, vec3 light)
 
 static vec3 sample_phong(const brdf *b, float u, float v)
 {
-    /* 1 - v is in (0, 1], and cos^2 = (1 - v)^(2 / (n + 1)); the sine by expm1, so that sharp lobes keep their width. */
+    /* 1 - v is in (0, 1], and cos^2 = (1 - v)^(2 / (n + 1)); the sine by expm1, so that sharp lobes keep their width.
+     */
     float exponent = 2.0f / (b->exponent + 1.0f) * logf(1.0f - v);
     float cosine = expf(0.5f * exponent), sine = sqrtf(-expm1f(exponent));
     float angle = (float)(2 * PI) * u;

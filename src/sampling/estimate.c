@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The estimator: multi-sample MIS with the balance heuristic over the light techniques (a pool per face, or one) and the
- * surface technique (BRDF or cosine). Every sample contributes L rho cos / sum_k m_k pdf_k, with the expected counts m_k. */
+ * The estimator: multi-sample MIS with the balance heuristic over the light techniques (a pool per face, or one) and
+ * the surface technique (BRDF or cosine). Every sample contributes L rho cos / sum_k m_k pdf_k, with the expected
+ * counts m_k. */
 #include "sampling/estimate.h"
 
 #include "core/error.h"
@@ -75,8 +76,8 @@ static float light_weight(const helio_pools *pools, uint32_t technique, vec3 nor
     return beta * (float)tables->flux[technique];
 }
 
-/* Expected counts m_k: samples in proportion to beta_f x flux_f, and a fixed share for the surface. All are 0 where no light
- * can come from above the horizon. */
+/* Expected counts m_k: samples in proportion to beta_f x flux_f, and a fixed share for the surface. All are 0 where no
+ * light can come from above the horizon. */
 static void expect_counts(const helio_pools *pools, const helio_estimate_desc *desc, vec3 normal,
                           float expected[TECHNIQUES])
 {
@@ -242,44 +243,76 @@ void estimate_point(const helio_pools *pools, const helio_shading_point *point, 
 
 /* ---- the public functions ---- */
 
-helio_status helio_estimate(const helio_pools *pools, const helio_shading_point *point,
+static helio_status check_unit(const char *name, const float direction[3])
+{
+    float size = length(vec3_from(direction));
+    if (fabsf(size - 1.0f) <= 1e-3f)
+        return HELIO_OK;
+    return fail(HELIO_ERR_ARGUMENT, "the %s of a shading point has length %g; give a unit vector", name, (double)size);
+}
+
+/* Checks what a caller gives and fills in defaults; the renderer, which makes its points itself, does without. */
+static helio_status resolve_point(const helio_shading_point *given, helio_shading_point *point)
+{
+    if (given == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "an estimate needs a shading point");
+    *point = *given;
+    const float *flat = point->geometric_normal;
+    if (flat[0] == 0.0f && flat[1] == 0.0f && flat[2] == 0.0f)
+        memcpy(point->geometric_normal, point->normal, sizeof point->normal);
+    HELIO_TRY(check_unit("normal", point->normal));
+    HELIO_TRY(check_unit("geometric normal", point->geometric_normal));
+    HELIO_TRY(check_unit("view", point->view));
+    return helio_material_check(&point->material);
+}
+
+helio_status helio_estimate(const helio_pools *pools, const helio_shading_point *given_point,
                             const helio_estimate_desc *given, float radiance[3], helio_estimate_info *info)
 {
     helio_estimate_desc desc;
-    if (point == NULL || radiance == NULL)
-        return fail(HELIO_ERR_ARGUMENT, "helio_estimate needs a shading point and a place for the radiance");
+    helio_shading_point point;
+    if (radiance == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "helio_estimate needs a place for the radiance");
     HELIO_TRY(estimate_resolve(pools, given, &desc));
+    HELIO_TRY(resolve_point(given_point, &point));
     estimate_result result;
-    estimate_point(pools, point, &desc, &result);
+    estimate_point(pools, &point, &desc, &result);
     memcpy(radiance, result.visible, sizeof result.visible);
     if (info != NULL)
         *info = result.info;
     return HELIO_OK;
 }
 
-helio_status helio_count(const helio_pools *pools, const helio_shading_point *point, const helio_estimate_desc *given,
-                         helio_counts *counts)
+static helio_status begin_checked(const helio_pools *pools, const helio_shading_point *given_point,
+                                  const helio_estimate_desc *given, gathering *g)
 {
     helio_estimate_desc desc;
-    if (point == NULL || counts == NULL)
-        return fail(HELIO_ERR_ARGUMENT, "helio_count needs a shading point and a place for the counts");
+    helio_shading_point point;
     HELIO_TRY(estimate_resolve(pools, given, &desc));
+    HELIO_TRY(resolve_point(given_point, &point));
+    begin(g, pools, &point, &desc);
+    return HELIO_OK;
+}
+
+helio_status helio_count(const helio_pools *pools, const helio_shading_point *point, const helio_estimate_desc *desc,
+                         helio_counts *counts)
+{
     gathering g = {0};
-    begin(&g, pools, point, &desc);
+    if (counts == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "helio_count needs a place for the counts");
+    HELIO_TRY(begin_checked(pools, point, desc, &g));
     *counts = g.counts;
     return HELIO_OK;
 }
 
-helio_status helio_gather(const helio_pools *pools, const helio_shading_point *point, const helio_estimate_desc *given,
+helio_status helio_gather(const helio_pools *pools, const helio_shading_point *point, const helio_estimate_desc *desc,
                           helio_sample *samples, uint32_t *count)
 {
-    helio_estimate_desc desc;
-    if (point == NULL || samples == NULL || count == NULL)
-        return fail(HELIO_ERR_ARGUMENT, "helio_gather needs a shading point and places for samples and their count");
-    HELIO_TRY(estimate_resolve(pools, given, &desc));
     gathering g = {0};
-    begin(&g, pools, point, &desc);
     uint32_t taken = 0;
+    if (samples == NULL || count == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "helio_gather needs places for samples and their count");
+    HELIO_TRY(begin_checked(pools, point, desc, &g));
     for (uint32_t technique = 0; technique < TECHNIQUES; technique++) {
         take_samples(&g, technique, 0, g.counts.realised[technique], samples + taken);
         taken += g.counts.realised[technique];

@@ -25,8 +25,8 @@ struct helio_pools {
     float *density;
 };
 
-/* First sample of the window from which a point reads `wanted` samples: windows are aligned to powers of two, so that each
- * is a net of its own. choice: any hash. */
+/* First sample of the window from which a point reads `wanted` samples: windows are aligned to powers of two, so that
+ * each is a net of its own. choice: any hash. */
 uint32_t pools_window(const helio_pools *pools, uint32_t wanted, uint32_t choice);
 
 #endif

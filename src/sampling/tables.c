@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * Fixed-point tables. Each row is scaled by a power of two that depends only on its largest weight, rounded to integers
- * (at least 1 for a texel that is not black) and summed; the sums of the rows are scaled likewise into the marginal. Scaling
- * by a power of two is exact and integer sums do not depend on their order, so equal cubes give equal bits everywhere. */
+ * (at least 1 for a texel that is not black) and summed; the sums of the rows are scaled likewise into the marginal.
+ * Scaling by a power of two is exact and integer sums do not depend on their order, so equal cubes give equal bits
+ * everywhere. */
 #include "sampling/tables.h"
 
 #include "core/context.h"
@@ -81,8 +82,8 @@ void helio_tables_destroy(helio_tables *tables)
 
 /* ---- update ---- */
 
-/* Luminance x relative solid angle (solid_angles NULL: luminance alone). Relative to 4 / K sr, the largest that a texel of
- * a fine cube has, so that no product overflows. */
+/* Luminance x relative solid angle (solid_angles NULL: luminance alone). Relative to 4 / K sr, the largest that a texel
+ * of a fine cube has, so that no product overflows. */
 static float texel_weight(const float rgb[3], const float *solid_angles, size_t column, float quarter_texels)
 {
     float value = luminance(rgb);
@@ -94,8 +95,8 @@ static bool is_lit(const float rgb[3])
     return rgb[0] > 0.0f || rgb[1] > 0.0f || rgb[2] > 0.0f;
 }
 
-/* The exponent e for which the largest weight x 2^e is below 2^bits, and nearly reaches it. At most 126, so that 2^e is a
- * normal float and a weight that a machine might flush to zero comes out as 0 or 1 in either case. */
+/* The exponent e for which the largest weight x 2^e is below 2^bits, and nearly reaches it. At most 126, so that 2^e is
+ * a normal float and a weight that a machine might flush to zero comes out as 0 or 1 in either case. */
 static int row_exponent(float largest, int bits)
 {
     int exponent = 0;

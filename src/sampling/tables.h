@@ -40,7 +40,8 @@ static inline face_table tables_face(const helio_tables *tables, uint32_t face)
 
 /* Density, 1/sr, of a direction given its face, from the stored integers: Eq. 1 of the paper's supplement,
  *   pdf(w | f) = I_ij / I_f x K / 4 x (1 + u^2 + v^2)^(3/2),
- * where I_ij / I_f is the product of the probabilities of the row and of the column in it. Drawing and MIS both use this. */
+ * where I_ij / I_f is the product of the probabilities of the row and of the column in it. Drawing and MIS both use
+ * this. */
 static inline float face_table_density(const face_table *table, uint32_t row, uint32_t column, float u, float v)
 {
     uint32_t size = table->size;
@@ -61,8 +62,8 @@ static inline float tables_face_probability(const helio_tables *tables, uint32_t
     return tables->faces[6] ? (float)(tables->faces[face + 1] - tables->faces[face]) / (float)tables->faces[6] : 0.0f;
 }
 
-/* Inverts prefix sums [count + 1] at x, a fraction of 2^32. fraction receives where x lies inside of the cell found, as a
- * fraction of 2^32 again. All in integers. The total must not be 0. */
+/* Inverts prefix sums [count + 1] at x, a fraction of 2^32. fraction receives where x lies inside of the cell found, as
+ * a fraction of 2^32 again. All in integers. The total must not be 0. */
 uint32_t tables_invert(const uint32_t *sums, uint32_t count, uint32_t x, uint32_t *fraction);
 
 /* helio_tables_sample() at a point given as fractions of 2^32. */
