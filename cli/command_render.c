@@ -57,14 +57,13 @@ static void warn_of_bad_texels(const char *label, const stats_frame *frame)
                         frame->out_of_gamut);
 }
 
-/* The map counts what is negative after colour conversion, the file what was bad before it. */
-static void note_light(stats_frame *frame, const helio_environment_info *light, uint64_t bad_in_file)
+/* What was negative in the file, and what colour conversion made so. */
+static void note_light(stats_frame *frame, const helio_environment_info *light, const helio_bad_pixels *in_file)
 {
-    frame->nan = light->nan;
-    frame->infinite = light->infinite;
-    uint64_t not_finite = light->nan + light->infinite;
-    frame->negative = bad_in_file > not_finite ? bad_in_file - not_finite : 0;
-    frame->out_of_gamut = light->negative > frame->negative ? light->negative - frame->negative : 0;
+    frame->nan = light->bad.nan;
+    frame->infinite = light->bad.infinite;
+    frame->negative = in_file->negative;
+    frame->out_of_gamut = light->bad.negative > in_file->negative ? light->bad.negative - in_file->negative : 0;
     for (int face = 0; face < 6; face++)
         frame->flux += light->flux[face];
 }
@@ -116,7 +115,7 @@ static bool load_environment(render_job *job)
     if (status == HELIO_OK)
         status = make_environment(job, &pixels);
     if (status == HELIO_OK) {
-        note_light(&job->frame, &job->light, pixels.bad_in_file);
+        note_light(&job->frame, &job->light, &pixels.bad);
         warn_of_bad_texels(job->plan.source.label, &job->frame);
     }
     environment_pixels_release(&pixels, job->context);

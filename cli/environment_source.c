@@ -112,7 +112,7 @@ helio_status environment_source_read(const environment_source *source, helio_con
     pixels->height = image->height;
     pixels->rgb = image->rgb;
     pixels->layout = image->layout;
-    pixels->bad_in_file = image->bad_in_file;
+    pixels->bad = image->bad;
     return HELIO_OK;
 }
 

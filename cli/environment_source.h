@@ -20,7 +20,7 @@ typedef struct environment_pixels {
     uint32_t width, height;
     const float *rgb;
     helio_layout layout;  /* what metadata says, else AUTO */
-    uint64_t bad_in_file; /* as in helio_image */
+    helio_bad_pixels bad; /* as in helio_image */
     helio_image *image;   /* NULL for a constant */
 } environment_pixels;
 

@@ -44,7 +44,7 @@ endif()
 if(HELIO_WITH_ASSIMP)
     heliostat_find(ASSIMP libassimp-dev assimp CONFIG QUIET)
     heliostat_find(ASSIMP zlib1g-dev ZLIB QUIET) # for .ply.gz
-    list(APPEND SOURCES src/scene/mesh_assimp.c)
+    list(APPEND SOURCES src/scene/gzip.c src/scene/mesh_assimp.c src/scene/mesh_materials.c src/scene/mesh_textures.c)
     list(APPEND FEATURE_DEFINITIONS HELIO_WITH_ASSIMP=1)
     list(APPEND FEATURE_LIBRARIES assimp::assimp ZLIB::ZLIB)
 endif()

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * image_support.h - a context that counts its memory, a directory for files, and checks for tests that read pictures. */
+ * image_support.h - a context that counts its memory, a directory for files, and checks for tests that read pictures.
+ */
 #ifndef HELIOSTAT_TESTS_IMAGE_SUPPORT_H
 #define HELIOSTAT_TESTS_IMAGE_SUPPORT_H
 
@@ -232,5 +233,10 @@ static inline unsigned read_folder(fixture *f, const char *folder)
 }
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, fixture_setup, fixture_teardown)
+
+static inline uint64_t bad_pixels(const helio_image *image)
+{
+    return image->bad.nan + image->bad.infinite + image->bad.negative;
+}
 
 #endif

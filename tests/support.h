@@ -52,8 +52,8 @@ double random_unit(uint64_t *state); /* [0, 1) */
 /* One-sided p-value of a standard normal z: the chance of this z or a larger one. */
 double normal_tail(double z);
 
-/* Pearson's statistic as a p-value (Wilson and Hilferty). Bins that expect less than 5 count as one; something in a bin that
- * expects nothing gives 0. lost: degrees of freedom that the expectation took from the data, mostly 1. */
+/* Pearson's statistic as a p-value (Wilson and Hilferty). Bins that expect less than 5 count as one; something in a bin
+ * that expects nothing gives 0. lost: degrees of freedom that the expectation took from the data, mostly 1. */
 double chi_square_tail(const double *observed, const double *expected, size_t bins, size_t lost);
 
 /* ---- environments ---- */

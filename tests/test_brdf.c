@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * BRDFs: densities that integrate to 1 and describe what is drawn, values that keep energy and follow their formulas.
  *
- * Quadrature: a regular grid in the coordinates of the sharpest lobe (worked out here, in double) and one that is uniform
- * over the sphere are combined by the balance heuristic, so that peaks and tails are both resolved. */
+ * Quadrature: a regular grid in the coordinates of the sharpest lobe (worked out here, in double) and one that is
+ * uniform over the sphere are combined by the balance heuristic, so that peaks and tails are both resolved. */
 #include "support.h"
 
 #include "core/vector.h"
@@ -300,9 +300,9 @@ static void check_albedo(const surface *s, const integrals *exact, const tally *
     }
 }
 
-/* No surface reflects more than it receives, except that glTF's diffuse lobe, dimmed by the Fresnel term of the half vector
- * and not of the view, does not leave room for all that a dielectric's specular lobe reflects at grazing views: up to 1.83
- * for white at roughness 0. Each of the two lobes stays below 1. */
+/* No surface reflects more than it receives, except that glTF's diffuse lobe, dimmed by the Fresnel term of the half
+ * vector and not of the view, does not leave room for all that a dielectric's specular lobe reflects at grazing views:
+ * up to 1.83 for white at roughness 0. Each of the two lobes stays below 1. */
 static void check_energy(const surface *s, const integrals *exact)
 {
     const helio_material *m = &s->material;
@@ -395,8 +395,8 @@ static void values_follow_their_formulas(void **context)
         /* Closer to the horizon, the rounding of a direction's own coordinates shows in its cosine. */
         if (fabs(ddot(light, s.about_normal.z)) < 1e-3)
             continue;
-        /* Light and view are unit vectors but for their rounding, which tilts a half vector the more the shorter their sum
-         * is, and a smooth surface tells the tilt. */
+        /* Light and view are unit vectors but for their rounding, which tilts a half vector the more the shorter their
+         * sum is, and a smooth surface tells the tilt. */
         dvec sum = dadd(s.view, light, 1);
         double tolerance = 1e-3 + 4e-7 / (sqrt(ddot(sum, sum)) * s.alpha), expected[3];
         float value[3];

@@ -483,7 +483,8 @@ static void light_one_pixel(map *m, uint32_t row, uint32_t column, float value)
         m->rgb[((size_t)row * m->width + column) * 3 + c] = value;
 }
 
-/* Pixels at the poles, beside the wrap, across the edges and corners of faces (an eighth of the width off +Z), and others. */
+/* Pixels at the poles, beside the wrap, across the edges and corners of faces (an eighth of the width off +Z), and
+ * others. */
 static void flux_of_single_pixels_is_kept_in_latlong_maps(void **state)
 {
     (void)state;
@@ -592,7 +593,8 @@ static void light_of_a_pixel_lands_where_the_pixel_is(void **state)
     }
 }
 
-/* Every pixel covers what its texels say: each texel against the average of f over it, edges, corners and poles included. */
+/* Every pixel covers what its texels say: each texel against the average of f over it, edges, corners and poles
+ * included. */
 static void expect_analytic(helio_layout layout, uint32_t width, uint32_t height, uint32_t size, double tolerance)
 {
     map m = make_analytic_map(layout, width, height, smooth);
@@ -728,8 +730,8 @@ static double compare_environments(const helio_environment *a, const helio_envir
     return sum / (18.0 * size * size);
 }
 
-/* Both pictures show the same; turned or mirrored the second one is at least twice as different, but for those of the 48
- * ways (twins) that leave the picture's pattern as it is. */
+/* Both pictures show the same; turned or mirrored the second one is at least twice as different, but for those of the
+ * 48 ways (twins) that leave the picture's pattern as it is. */
 static void expect_same_place(const char *latlong, const char *cube, double difference, int twins)
 {
     char paths[2][TEST_PATH_SIZE];
@@ -782,7 +784,8 @@ static double arm_luminance(const helio_environment *environment, int axis, doub
     return sum;
 }
 
-/* In the middle of each face these pictures have dark arms that point along the two positive axes beside the face's own. */
+/* In the middle of each face these pictures have dark arms that point along the two positive axes beside the face's
+ * own. */
 static void expect_drawn_axes(const char *name)
 {
     char path[TEST_PATH_SIZE];
@@ -823,8 +826,8 @@ static int fault_of(helio_environment *environment, const float rgb[3], float se
     helio_environment_info info;
     assert_ok(helio_environment_update(environment, rgb, &info));
     helio_environment_radiance(environment, (float[3]){0, 0, 1}, seen);
-    assert_true(info.nan + info.infinite + info.negative <= 1);
-    return info.nan ? 1 : info.infinite ? 2 : info.negative ? 3 : 0;
+    assert_true(info.bad.nan + info.bad.infinite + info.bad.negative <= 1);
+    return info.bad.nan ? 1 : info.bad.infinite ? 2 : info.bad.negative ? 3 : 0;
 }
 
 static void bad_channels_are_counted_once_per_pixel(void **state)
@@ -877,9 +880,9 @@ static void any_bits_give_a_finite_cube(void **state)
             }
             helio_environment_info info;
             helio_environment *environment = make_from_map(shared_context, &m, 5, &info);
-            assert_int_equal(info.nan, expected[1]);
-            assert_int_equal(info.infinite, expected[2]);
-            assert_int_equal(info.negative, expected[3]);
+            assert_int_equal(info.bad.nan, expected[1]);
+            assert_int_equal(info.bad.infinite, expected[2]);
+            assert_int_equal(info.bad.negative, expected[3]);
             for (size_t i = 0; i < 6 * 5 * 5 * 3; i++) {
                 float value = helio_environment_cube(environment)[i];
                 assert_true(isfinite(value) && !signbit(value));
@@ -1136,7 +1139,7 @@ static void info_sums_up_the_cube(void **state)
     }
     assert_true(fabs(info.mean_luminance - total / (4 * PI)) < 1e-6 * info.mean_luminance);
     assert_true(fabs((double)info.max_luminance - brightest) < 1e-6 * brightest);
-    assert_int_equal(info.nan + info.infinite + info.negative, 0);
+    assert_int_equal(info.bad.nan + info.bad.infinite + info.bad.negative, 0);
     helio_environment_destroy(environment);
     free(m.rgb);
 }

@@ -85,8 +85,8 @@ static void make_maps(test_map maps[MAPS])
 
 enum { NORMALS = 6, MATERIALS = 3, POINTS = NORMALS * MATERIALS };
 
-/* Normals along an axis, along an edge, along a corner and in between; views from above to grazing; one geometric normal
- * that differs from the shading normal. */
+/* Normals along an axis, along an edge, along a corner and in between; views from above to grazing; one geometric
+ * normal that differs from the shading normal. */
 static void make_points(helio_shading_point points[POINTS])
 {
     static const vec3 normals[NORMALS] = {{0, 1, 0},  {0.6f, 0.8f, 0},  {1, 1, 1},
@@ -211,8 +211,9 @@ static void run_seeds(world *w, helio_shading_point points[POINTS], const helio_
     }
 }
 
-/* Two z-tests. The first takes its variance from quadrature, which sees a sun that no sample may have met; the second takes
- * the variance found, which is smaller because the samples are stratified, where the light is even enough to trust it. */
+/* Two z-tests. The first takes its variance from quadrature, which sees a sun that no sample may have met; the second
+ * takes the variance found, which is smaller because the samples are stratified, where the light is even enough to
+ * trust it. */
 static void check_point(const world *w, const helio_shading_point *point, const helio_estimate_desc *desc,
                         const moments *sums, bool even, const char *what)
 {
@@ -324,8 +325,8 @@ static void expect_bins(const world *w, const helio_shading_point *point, const 
             }
 }
 
-/* Everything together: pools, windows, rounding of counts, scrambled points, lobes. Stratified samples spread more evenly
- * than independent ones, so the statistic errs on the side of passing; a wrong density still stands out. */
+/* Everything together: pools, windows, rounding of counts, scrambled points, lobes. Stratified samples spread more
+ * evenly than independent ones, so the statistic errs on the side of passing; a wrong density still stands out. */
 static void samples_follow_their_density_for_every_strategy_and_material(void **state)
 {
     (void)state;
@@ -478,8 +479,8 @@ static void other_furnaces_return_their_quadrature_and_no_more_than_one(void **s
     helio_context_destroy(context);
 }
 
-/* Irradiance from a spherical polygon of radiance 1 that lies above the horizon: Lambert's formula, half the sum over edges of
- * the edge's angle times the cosine between the normal and the edge's plane. */
+/* Irradiance from a spherical polygon of radiance 1 that lies above the horizon: Lambert's formula, half the sum over
+ * edges of the edge's angle times the cosine between the normal and the edge's plane. */
 static double lambert_irradiance(const vec3 corners[4], vec3 normal)
 {
     double sum = 0;
@@ -636,8 +637,8 @@ static void beta_makes_counts_continuous(void **state)
     helio_context_destroy(context);
 }
 
-/* No fireflies: a matte point's light samples weigh at most sum beta flux / (pi N), whatever the sun. The factor 1.5 is the
- * rounding of the least texels of a row to whole numbers. */
+/* No fireflies: a matte point's light samples weigh at most sum beta flux / (pi N), whatever the sun. The factor 1.5 is
+ * the rounding of the least texels of a row to whole numbers. */
 static void sample_weights_are_bounded_under_a_sun(void **state)
 {
     (void)state;

@@ -192,7 +192,7 @@ static void test_all_compressions_of_half_and_float(void **state)
             assert_non_null(image->alpha);
             expect_planes(image, planes, half ? compressions[i].half_loss : compressions[i].float_loss);
             assert_int_equal(image->layout, HELIO_LAYOUT_AUTO);
-            assert_int_equal(image->bad_in_file, 0);
+            assert_int_equal(bad_pixels(image), 0);
             helio_image_destroy(f->context, image);
         }
     assert_int_equal(f->warnings, 0);
@@ -401,7 +401,7 @@ static void test_chromaticities_are_converted(void **state)
     assert_float_equal(image->rgb[2], -0.02400f * red, 1e-4f);
     for (int c = 3; c < 6; c++)
         assert_float_equal(image->rgb[c], 2, 1e-5f);
-    assert_int_equal(image->bad_in_file, 1); /* of the file, not of what conversion makes */
+    assert_int_equal(bad_pixels(image), 1); /* of the file, not of what conversion makes */
     helio_image_destroy(f->context, image);
 }
 
@@ -500,7 +500,7 @@ static void test_overflow_of_half_floats_is_told(void **state)
     helio_image *image = read_source(f, &source);
     assert_float_equal(image->rgb[0], 1, 0.01f);
     assert_true(isinf(image->rgb[3 * 5]));
-    assert_in_range(image->bad_in_file, 1, 4);
+    assert_in_range(bad_pixels(image), 1, 4);
     assert_int_equal(f->warnings, 1);
     assert_non_null(strstr(f->warning, "65504"));
     helio_image_destroy(f->context, image);
@@ -604,7 +604,7 @@ static void test_written_pictures_keep_every_bit(void **state)
         assert_memory_equal(image->rgb + 3 * i, rgba + 4 * i, 3 * sizeof(float));
         assert_memory_equal(image->alpha + i, rgba + 4 * i + 3, sizeof(float));
     }
-    assert_int_equal(image->bad_in_file, 3);
+    assert_int_equal(bad_pixels(image), 3);
     helio_image_destroy(f->context, image);
 }
 
@@ -730,7 +730,7 @@ static void test_captured_maps_have_known_values(void **state)
         assert_int_equal(image->width, maps[i].width);
         assert_int_equal(image->height, maps[i].height);
         assert_int_equal(image->layout, maps[i].layout);
-        assert_int_equal(image->bad_in_file, maps[i].bad);
+        assert_int_equal(bad_pixels(image), maps[i].bad);
         assert_true(fabs(greatest / maps[i].greatest - 1) < 1e-4);
         assert_true(fabs(mean / maps[i].mean - 1) < 1e-4);
         helio_image_destroy(f->context, image);

@@ -252,8 +252,8 @@ static void check_follows(const fixture *f, const float *map, uint32_t passes)
         wrong += count_texels(f->pools, map, drawn);
     }
     expect_texels(f->pools, map, draws, expected);
-    /* Faces of a FACE pool are fixed in number: five more degrees of freedom are lost. Samples within rounding of a texel's
-     * border may lead to its neighbour. */
+    /* Faces of a FACE pool are fixed in number: five more degrees of freedom are lost. Samples within rounding of a
+     * texel's border may lead to its neighbour. */
     size_t lost = f->pools->parts.light == STRATEGY_LIGHT_FACES ? CUBE_FACES : 1;
     assert_true((double)wrong <= 1e-3 * draws);
     for (size_t i = 0; i < CUBE_FACES * TEXELS; i++)

@@ -132,7 +132,7 @@ static void test_radiance_values_are_mantissa_plus_half(void **state)
     assert_int_equal(image->width, WIDTH);
     assert_int_equal(image->height, HEIGHT);
     assert_int_equal(image->layout, HELIO_LAYOUT_AUTO);
-    assert_int_equal(image->bad_in_file, 0);
+    assert_int_equal(bad_pixels(image), 0);
     assert_null(image->alpha);
     for (uint32_t row = 0; row < HEIGHT; row++)
         for (uint32_t column = 0; column < WIDTH; column++) {

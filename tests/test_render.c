@@ -253,8 +253,8 @@ static void samples_beyond_the_pools_take_more_passes_and_converge(void **state)
             errors[i] += pow((double)(pictures[0][i][k] - pictures[1][i][k]), 2);
     print_message("squared difference of two seeds at 8, 128, 2048 spp: %.3g %.3g %.3g\n", errors[0], errors[1],
                   errors[2]);
-    /* 16 and 256 times the samples should leave 1/16 and 1/256 of the variance. All pixels share the pools, so that their
-     * errors go together and the sum over pixels is known to a factor of about four only. */
+    /* 16 and 256 times the samples should leave 1/16 and 1/256 of the variance. All pixels share the pools, so that
+     * their errors go together and the sum over pixels is known to a factor of about four only. */
     assert_true(errors[1] < errors[0] / 4);
     assert_true(errors[2] < errors[0] / 50);
     helio_context_destroy(context);
@@ -281,8 +281,8 @@ static void camera_samples_smooth_edges_and_share_passes(void **state)
     helio_context_destroy(context);
 }
 
-/* The supplement's Figure 1, as a test: along a row of pixels over a sphere under a low sun, the noise of neighbouring pixels
- * differs by a step where the sun's face dips below the horizon, unless beta fades its samples out. */
+/* The supplement's Figure 1, as a test: along a row of pixels over a sphere under a low sun, the noise of neighbouring
+ * pixels differs by a step where the sun's face dips below the horizon, unless beta fades its samples out. */
 static void beta_leaves_no_step_in_the_noise(void **state)
 {
     (void)state;
@@ -440,8 +440,8 @@ static void the_background_shows_the_map_the_right_way_round(void **state)
             y += (double)picture.rgba[p * 4] * (p / WIDTH + 0.5);
         }
         assert_true(light > 1.0);
-        /* A camera that looks along +Z has +X at its left, as the map has: a column left of the centre is seen left. The
-         * pixel is 11.25 degrees wide and high: its centre is 5.6 degrees left of the middle and 5.6 above. */
+        /* A camera that looks along +Z has +X at its left, as the map has: a column left of the centre is seen left.
+         * The pixel is 11.25 degrees wide and high: its centre is 5.6 degrees left of the middle and 5.6 above. */
         double per_degree = HEIGHT / 30.0;
         assert_float_equal((float)(x / light), (float)(WIDTH / 2 - 5.6 * per_degree), (float)(1.5 * per_degree));
         assert_float_equal((float)(y / light), (float)(HEIGHT / 2 - 5.6 * per_degree), (float)(1.5 * per_degree));
@@ -521,7 +521,8 @@ static void update_and_render_take_no_memory(void **state)
     assert_int_equal(count.live, 0);
 }
 
-/* Frame t is lit by the tables of frame t: after an update the picture equals that of a renderer that never saw another map. */
+/* Frame t is lit by the tables of frame t: after an update the picture equals that of a renderer that never saw another
+ * map. */
 static void every_frame_is_lit_by_its_own_map(void **state)
 {
     (void)state;

@@ -172,9 +172,9 @@ static void every_lit_texel_and_no_black_one_can_be_drawn(void **state)
 }
 
 /* Stored and exact probabilities differ by no more than rounding to integers may cause. A weight x that is stored as an
- * integer with |stored - x| <= e has, in a sum S of stored weights with errors e_1 ... e_n, a probability off by at most
- * (e + p (e_1 + ... + e_n)) / S. Each rounding has e <= 1 (where 1 is the least weight that is kept), and the single
- * precision of a weight adds 4 roundings of 2^-24. */
+ * integer with |stored - x| <= e has, in a sum S of stored weights with errors e_1 ... e_n, a probability off by at
+ * most (e + p (e_1 + ... + e_n)) / S. Each rounding has e <= 1 (where 1 is the least weight that is kept), and the
+ * single precision of a weight adds 4 roundings of 2^-24. */
 static double row_bound(uint32_t size, double p, uint32_t sum)
 {
     return (1 + p * size) / sum + 4e-7 * p;
@@ -262,9 +262,9 @@ static double exact_flux(const fixture *f, size_t face)
     return sum;
 }
 
-/* R integers of a row or of the marginal use b = 31 - ceil(log2 R) bits, and the largest of them the highest bit, so that
- * rounding changes the sum by at most R / 2^(b - 1) of it, twice; single precision comes on top. Weights are kept in steps
- * of 2^-126 at the least. */
+/* R integers of a row or of the marginal use b = 31 - ceil(log2 R) bits, and the largest of them the highest bit, so
+ * that rounding changes the sum by at most R / 2^(b - 1) of it, twice; single precision comes on top. Weights are kept
+ * in steps of 2^-126 at the least. */
 static double flux_tolerance(uint32_t size, double exact)
 {
     return (1e-6 + (double)size * size * 0x1p-28) * exact + 0x1p-122;
@@ -360,7 +360,8 @@ static void density_is_equation_1_of_the_paper(void **state)
 
 /* ---- drawing --------------------------------------------------------------------------------------- */
 
-/* Numbers of a table row with zeros, ones and giants among them; returns the index of the first and last positive cell. */
+/* Numbers of a table row with zeros, ones and giants among them; returns the index of the first and last positive cell.
+ */
 static void random_sums(uint32_t *sums, uint32_t count, uint64_t *state, uint32_t *first, uint32_t *last)
 {
     *first = UINT32_MAX;

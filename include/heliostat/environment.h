@@ -27,12 +27,10 @@ typedef struct helio_environment_desc {
     helio_layout layout;    /* their layout; default: guessed from the shape, see helio_layout_guess() */
 } helio_environment_desc;
 
-/* What one update saw. A channel that is NaN or Inf makes its pixel 0; a negative channel becomes 0. Channels beyond
- * 1e30 in magnitude count as infinite: no light is that bright, and sums of such numbers would not fit a float. */
+/* What one update saw. A NaN or infinite channel makes its pixel 0, a negative channel becomes 0. Channels beyond 1e30
+ * in magnitude count as infinite: no light is that bright, and sums of such numbers would not fit a float. */
 typedef struct helio_environment_info {
-    uint64_t nan;          /* pixels of the map with a NaN channel */
-    uint64_t infinite;     /* pixels with a channel that is infinite or above 1e30, and none NaN */
-    uint64_t negative;     /* pixels with a negative channel, and none NaN or infinite */
+    helio_bad_pixels bad;  /* of the map, as given to helio_environment_update() */
     double flux[6];        /* integral of luminance over each face: radiance unit x sr */
     double mean_luminance; /* over the sphere: sum of flux / (4 pi) */
     float max_luminance;   /* of a texel of the cube */

@@ -30,13 +30,20 @@ HELIO_API helio_status helio_layout_parse(const char *name, helio_layout *layout
  */
 HELIO_API helio_status helio_layout_guess(uint32_t width, uint32_t height, helio_layout hint, helio_layout *layout);
 
+/* Pixels that cannot be light. Each counts once, in the first class that fits. */
+typedef struct helio_bad_pixels {
+    uint64_t nan;      /* with a NaN channel */
+    uint64_t infinite; /* with a channel that is infinite or beyond 1e30 in magnitude */
+    uint64_t negative; /* with a negative channel */
+} helio_bad_pixels;
+
 /* A picture that was read. Own it through helio_image_destroy(). */
 typedef struct helio_image {
     uint32_t width, height; /* pixels, each >= 1 */
     float *rgb;   /* [height][width][3], linear Rec. 709; may hold NaN, Inf and negative values as the file does */
     float *alpha; /* [height][width] in 0..1, or NULL where the file has none */
     helio_layout layout;  /* what the file's metadata says (OpenEXR's envmap attribute), else AUTO */
-    uint64_t bad_in_file; /* pixels with NaN, Inf or a negative channel as stored, before any colour conversion */
+    helio_bad_pixels bad; /* as stored, before any colour conversion */
 } helio_image;
 
 typedef struct helio_image_read_desc {

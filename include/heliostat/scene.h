@@ -30,13 +30,37 @@ typedef struct helio_material {
     float roughness;   /* GGX, 0..1 */
 } helio_material;
 
-/* Parses "diffuse:0.8", "diffuse:0.8,0.2,0.1", "phong:kd=0.5,ks=0.5,n=120", "ggx:base=1,0.8,0.3,metallic=1,roughness=0.2".
- * kd, ks and base take one number or three. Keys left out have the values shown here. HELIO_ERR_ARGUMENT, with the key
- * and its range, for anything else; kd + ks > 1 is such an error. */
+/* Parses "diffuse:0.8", "diffuse:0.8,0.2,0.1", "phong:kd=0.5,ks=0.5,n=120",
+ * "ggx:base=1,0.8,0.3,metallic=1,roughness=0.2". kd, ks and base take one number or three. Keys left out have the
+ * values shown here. HELIO_ERR_ARGUMENT, with the key and its range, for anything else, kd + ks > 1 included. */
 HELIO_API helio_status helio_material_parse(const char *specification, helio_material *material);
 
 /* HELIO_ERR_ARGUMENT, with the field and its range, if a field is out of range. */
 HELIO_API helio_status helio_material_check(const helio_material *material);
+
+/* ---- textures ----------------------------------------------------------------------- */
+
+/* What lies beyond 0..1. */
+typedef enum helio_wrap {
+    HELIO_WRAP_REPEAT = 0,
+    HELIO_WRAP_CLAMP,
+    HELIO_WRAP_MIRROR,
+} helio_wrap;
+
+/* A picture for a material. Looked up at a point (u, v) of the mesh: u = 0 is the left edge of the picture, v = 0 its
+ * upper edge, as in glTF. Decoded to linear and then filtered bilinearly; there are no mipmaps, so use aa > 1. Alpha is
+ * kept but never used: surfaces are opaque. There are no normal, occlusion or emission maps. */
+typedef struct helio_texture {
+    uint32_t width, height; /* texels, 1..16384 */
+    helio_wrap wrap_u, wrap_v;
+    const uint8_t *rgba; /* [height][width][4], top row first, encoded as in the file */
+} helio_texture;
+
+/* Which textures a material has: 1 is the first texture of the mesh, 0 is none. */
+typedef struct helio_material_textures {
+    uint32_t base_colour;        /* sRGB; multiplies helio_material.diffuse */
+    uint32_t metallic_roughness; /* linear; G multiplies roughness and B metallic (GGX only) */
+} helio_material_textures;
 
 /* ---- mesh ------------------------------------------------------------------------- */
 
@@ -48,8 +72,12 @@ typedef struct helio_mesh {
     uint32_t *triangle_materials;  /* [triangle_count], indices of materials; NULL if material_count is 0 */
     helio_material *materials;     /* [material_count]; NULL where the file brings none */
     float bounds[2][3];            /* least and greatest corner */
-    bool has_file_normals;         /* false: the normals were computed, weighted by angle */
+    bool has_file_normals;         /* false: the normals were computed, weighted by angle x area */
     uint32_t degenerate_triangles; /* triangles without area: kept, never hit */
+    float *texture_coordinates;    /* [vertex_count][2], u and v; NULL where there are none */
+    uint32_t texture_count;
+    helio_texture *textures;                    /* [texture_count]; NULL if texture_count is 0 */
+    helio_material_textures *material_textures; /* [material_count]; NULL if texture_count is 0 */
 } helio_mesh;
 
 typedef struct helio_mesh_desc {
@@ -60,13 +88,23 @@ typedef struct helio_mesh_desc {
     uint32_t material_count;
     const uint32_t *triangle_materials; /* [triangle_count], each < material_count */
     const helio_material *materials;    /* [material_count] */
+    const float *texture_coordinates;   /* [vertex_count][2], finite, up to 1e6, or NULL; required with textures */
+    uint32_t texture_count;
+    const helio_texture *textures;                    /* [texture_count], 1 GiB of texels in all */
+    const helio_material_textures *material_textures; /* [material_count]; required with textures */
 } helio_mesh_desc;
 
-/* Copies and checks arrays. HELIO_ERR_DATA, with the offending index, if they do not fit together. */
+/* Copies and checks arrays, texels included. HELIO_ERR_DATA, with the offending index, if they do not fit together. */
 HELIO_API helio_status helio_mesh_create(helio_context *context, const helio_mesh_desc *desc, helio_mesh **mesh);
 
 /* Reads whatever assimp reads (PLY, OBJ, glTF/GLB, ...), also gzipped (.ply.gz). Node transforms are applied, polygons
- * become triangles, points and lines are dropped. */
+ * become triangles, points and lines are dropped.
+ *
+ * Materials come with the base colour and metallic-roughness textures of glTF and with the diffuse ones (map_Kd) of
+ * others, PNG or JPEG, from inside the file or from files named relative to its folder. As in other programs such a
+ * name may lead out of the folder by "..". An absolute one is a place on somebody else's disk: only its last part is
+ * looked for, beside the mesh. A texture that cannot be read is a warning in the log, and the material's own colour is
+ * used. */
 HELIO_API helio_status helio_mesh_load(helio_context *context, const char *path, helio_mesh **mesh);
 HELIO_API void helio_mesh_destroy(helio_context *context, helio_mesh *mesh);
 
@@ -102,9 +140,9 @@ typedef struct helio_camera {
 } helio_camera;
 
 /* Parses "auto", "orbit:azimuth=30,elevation=15,distance=1.0,fov=40" (the defaults of orbit, and what auto means) or
- * "lookat:eye=X,Y,Z,at=X,Y,Z,fov=36" (eye is required, at is the mesh's centre by default) and frames the mesh: at distance 1.0 the mesh just fits a picture of this aspect
- * (width / height). Azimuth 0 looks from +Z, 90 from +X; degrees. Without a mesh only the specification is checked and
- * nothing is written. */
+ * "lookat:eye=X,Y,Z,at=X,Y,Z,fov=36" (eye is required, at is the mesh's centre by default) and frames the mesh: at
+ * distance 1.0 the mesh just fits a picture of this aspect (width / height). Azimuth 0 looks from +Z, 90 from +X;
+ * degrees. Without a mesh only the specification is checked and nothing is written. */
 HELIO_API helio_status helio_camera_parse(const char *specification, const helio_mesh *mesh, float aspect,
                                           helio_camera *camera);
 

@@ -26,7 +26,7 @@ typedef struct primary_hit {
     primary_kind kind;
     vec3 direction; /* of the ray, away from the eye */
     vec3 position, normal, geometric_normal;
-    const helio_material *material;
+    helio_material material;
     float depth;
 } primary_hit;
 
@@ -39,8 +39,8 @@ struct helio_renderer {
     primary_hit *hits; /* [height][width], of the current camera sample */
 };
 
-/* One camera sample with all or a part of its light samples. Light samples beyond what the pools give to a point at once
- * come in parts, each from pools of its own. */
+/* One camera sample with all or a part of its light samples. Light samples beyond what the pools give to a point at
+ * once come in parts, each from pools of its own. */
 typedef struct frame_step {
     uint32_t pass;          /* pools of this number */
     uint32_t camera_sample; /* 0 ... aa - 1 */

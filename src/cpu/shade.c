@@ -19,7 +19,7 @@ static bool light_reaches(void *user, const helio_shading_point *point, const fl
 
 static helio_shading_point shading_point(const struct frame *frame, const primary_hit *hit, uint32_t pixel)
 {
-    helio_shading_point point = {.material = hit->kind == PRIMARY_CATCHER ? catcher_material : *hit->material};
+    helio_shading_point point = {.material = hit->kind == PRIMARY_CATCHER ? catcher_material : hit->material};
     vec3_to(hit->position, point.position);
     vec3_to(hit->normal, point.normal);
     vec3_to(hit->geometric_normal, point.geometric_normal);
@@ -42,7 +42,7 @@ static void add_background(const struct frame *frame, const primary_hit *hit, do
 
 static void add_surface(film_surface *surface, const primary_hit *hit)
 {
-    const helio_material *material = hit->material;
+    const helio_material *material = &hit->material;
     const float normal[3] = {hit->normal.x, hit->normal.y, hit->normal.z};
     const float position[3] = {hit->position.x, hit->position.y, hit->position.z};
     for (int c = 0; c < 3; c++) {

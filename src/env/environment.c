@@ -5,10 +5,9 @@
 #include "core/error.h"
 #include "env/exposure.h"
 #include "env/resampler.h"
+#include "image/pixel_fault.h"
 
 #include <string.h>
-
-static const float BRIGHTEST = 1e30f; /* see helio_environment_info */
 
 enum { DEFAULT_CUBE_SIZE = 512, MAX_MAP_SIZE = 65536, MAX_MAP_PIXELS = 1 << 28 };
 
@@ -104,22 +103,12 @@ typedef struct hygiene {
     const float *rgb;
 } hygiene;
 
-enum { FAULT_NONE = -1, FAULT_NAN, FAULT_INFINITE, FAULT_NEGATIVE };
-
-/* Writes a pixel that is finite and not negative; tells what was wrong with it, the worst first. */
-static int clean_pixel(const float in[3], float out[3])
+/* Writes a pixel that is finite and not negative. */
+static void clean_pixel(pixel_fault fault, const float in[3], float out[3])
 {
-    int fault = FAULT_NONE;
-    for (int c = 0; c < 3; c++) {
-        if (in[c] < 0.0f && fault == FAULT_NONE)
-            fault = FAULT_NEGATIVE;
-        out[c] = in[c] > 0.0f ? in[c] : 0.0f; /* -0 becomes 0, too */
-    }
-    bool infinite = fabsf(in[0]) > BRIGHTEST || fabsf(in[1]) > BRIGHTEST || fabsf(in[2]) > BRIGHTEST;
-    bool nan = in[0] != in[0] || in[1] != in[1] || in[2] != in[2];
-    if (infinite || nan)
-        out[0] = out[1] = out[2] = 0.0f;
-    return nan ? FAULT_NAN : infinite ? FAULT_INFINITE : fault;
+    bool dark = fault == PIXEL_NAN || fault == PIXEL_INFINITE;
+    for (int c = 0; c < 3; c++)
+        out[c] = !dark && in[c] > 0.0f ? in[c] : 0.0f; /* -0 becomes 0, too */
 }
 
 static void clean_row(void *data, size_t row)
@@ -127,13 +116,14 @@ static void clean_row(void *data, size_t row)
     hygiene *work = data;
     helio_environment *environment = work->environment;
     size_t first = row * environment->width * 3;
-    uint64_t *faults = environment->row_faults[row];
-    faults[FAULT_NAN] = faults[FAULT_INFINITE] = faults[FAULT_NEGATIVE] = 0;
+    uint64_t faults[PIXEL_GOOD + 1] = {0};
     for (size_t i = first; i < first + (size_t)environment->width * 3; i += 3) {
-        int fault = clean_pixel(work->rgb + i, environment->clean + i);
-        if (fault != FAULT_NONE)
-            faults[fault]++;
+        pixel_fault fault = pixel_fault_of(work->rgb + i);
+        clean_pixel(fault, work->rgb + i, environment->clean + i);
+        faults[fault]++;
     }
+    environment->row_faults[row] =
+        (helio_bad_pixels){faults[PIXEL_NAN], faults[PIXEL_INFINITE], faults[PIXEL_NEGATIVE]};
 }
 
 helio_status helio_environment_update(helio_environment *environment, const float *rgb, helio_environment_info *info)
@@ -148,9 +138,9 @@ helio_status helio_environment_update(helio_environment *environment, const floa
         return HELIO_OK;
     *info = (helio_environment_info){0};
     for (uint32_t row = 0; row < environment->height; row++) {
-        info->nan += environment->row_faults[row][FAULT_NAN];
-        info->infinite += environment->row_faults[row][FAULT_INFINITE];
-        info->negative += environment->row_faults[row][FAULT_NEGATIVE];
+        info->bad.nan += environment->row_faults[row].nan;
+        info->bad.infinite += environment->row_faults[row].infinite;
+        info->bad.negative += environment->row_faults[row].negative;
     }
     exposure_measure(environment, info);
     return HELIO_OK;

@@ -20,7 +20,7 @@ struct helio_environment {
     float *cube;        /* [6][R][R][3] */
     float *solid_angle; /* [R][R], sr, the same for all faces */
     resampler *resampler;
-    uint64_t (*row_faults)[3]; /* [height]: pixels of a row with NaN, infinite, negative channels */
+    helio_bad_pixels *row_faults; /* [height] */
     vec3 map_axes[3]; /* world axes X Y Z as seen in the map's space: rows of an orthogonal matrix's transpose */
     float intensity;
 };

@@ -4,6 +4,7 @@
 #include "core/context.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "image/pixel_fault.h"
 
 #include <float.h>
 #include <inttypes.h>
@@ -16,25 +17,28 @@ typedef struct image_kind {
     const char *name;
     const char *magic;
     size_t magic_length;
+    bool encoded;                                                      /* by the sRGB curve */
     helio_status (*read)(const image_file *file, helio_image **image); /* NULL: not built in */
 } image_kind;
 
 static const image_kind KINDS[] = {
 #if HELIO_WITH_OPENEXR
-    {"OpenEXR", "\x76\x2f\x31\x01", 4, exr_read},
+    {"OpenEXR", "\x76\x2f\x31\x01", 4, false, exr_read},
 #else
-    {"OpenEXR", "\x76\x2f\x31\x01", 4, NULL},
+    {"OpenEXR", "\x76\x2f\x31\x01", 4, false, NULL},
 #endif
-    {"Radiance HDR", "#?", 2, radiance_read},     {"PFM", "PF", 2, pfm_read}, {"PFM", "Pf", 2, pfm_read},
+    {"Radiance HDR", "#?", 2, false, radiance_read},
+    {"PFM", "PF", 2, false, pfm_read},
+    {"PFM", "Pf", 2, false, pfm_read},
 #if HELIO_WITH_PNG
-    {"PNG", "\x89PNG\r\n\x1a\n", 8, png_read},
+    {"PNG", "\x89PNG\r\n\x1a\n", 8, true, png_read},
 #else
-    {"PNG", "\x89PNG\r\n\x1a\n", 8, NULL},
+    {"PNG", "\x89PNG\r\n\x1a\n", 8, true, NULL},
 #endif
 #if HELIO_WITH_JPEG
-    {"JPEG", "\xff\xd8\xff", 3, jpeg_read},
+    {"JPEG", "\xff\xd8\xff", 3, true, jpeg_read},
 #else
-    {"JPEG", "\xff\xd8\xff", 3, NULL},
+    {"JPEG", "\xff\xd8\xff", 3, true, NULL},
 #endif
 };
 
@@ -46,7 +50,7 @@ static const image_kind *find_kind(const unsigned char *bytes, size_t size)
     return NULL;
 }
 
-static helio_status decode(const image_file *file, helio_image **image)
+helio_status image_decode(const image_file *file, helio_image **image)
 {
     if (file->size == 0)
         return fail(HELIO_ERR_DATA, "%s is empty", file->path);
@@ -54,6 +58,8 @@ static helio_status decode(const image_file *file, helio_image **image)
     if (kind == NULL)
         return fail(HELIO_ERR_DATA,
                     "%s is not a picture that can be read; give OpenEXR, Radiance HDR, PFM, PNG or JPEG", file->path);
+    if (file->keep_encoding && !kind->encoded)
+        return fail(HELIO_ERR_DATA, "%s is %s, which cannot be used here; give PNG or JPEG", file->path, kind->name);
     if (kind->read == NULL)
         return fail(HELIO_ERR_UNSUPPORTED, "%s is %s, which this build cannot read; build with it or convert the file",
                     file->path, kind->name);
@@ -76,7 +82,7 @@ helio_status helio_image_read(helio_context *context, const char *path, const he
     unsigned char *bytes;
     HELIO_TRY(file_read(context, path, limit, &bytes, &file.size));
     file.bytes = bytes;
-    helio_status status = decode(&file, image);
+    helio_status status = image_decode(&file, image);
     context_release(context, bytes);
     return status;
 }
@@ -94,9 +100,10 @@ helio_status image_check_size(const image_file *file, uint64_t width, uint64_t h
 {
     if (width == 0 || height == 0)
         return fail(HELIO_ERR_DATA, "%s has no pixels: its size is %" PRIu64 " x %" PRIu64, file->path, width, height);
-    if (width > IMAGE_EDGE_LIMIT || height > IMAGE_EDGE_LIMIT)
-        return fail(HELIO_ERR_DATA, "%s is too large: %" PRIu64 " x %" PRIu64 " pixels, where %d are allowed each way",
-                    file->path, width, height, IMAGE_EDGE_LIMIT);
+    uint32_t max_edge = file->max_edge != 0 ? file->max_edge : IMAGE_EDGE_LIMIT;
+    if (width > max_edge || height > max_edge)
+        return fail(HELIO_ERR_DATA, "%s is too large: %" PRIu64 " x %" PRIu64 " pixels, where %u are allowed each way",
+                    file->path, width, height, max_edge);
     if (width * height > file->max_pixels)
         return fail(HELIO_ERR_DATA,
                     "%s is too large: %" PRIu64 " x %" PRIu64 " pixels, where %" PRIu64 " in all are allowed",
@@ -134,13 +141,14 @@ helio_status image_create(const image_file *file, uint64_t width, uint64_t heigh
 void image_count_bad(helio_image *image)
 {
     size_t pixels = (size_t)image->width * image->height;
-    image->bad_in_file = 0;
+    image->bad = (helio_bad_pixels){0};
     for (size_t i = 0; i < pixels; i++) {
-        const float *rgb = image->rgb + 3 * i;
-        bool good = true;
-        for (int c = 0; c < 3; c++)
-            good &= rgb[c] >= 0 && rgb[c] <= FLT_MAX; /* false for NaN too */
-        image->bad_in_file += !good;
+        switch (pixel_fault_of(image->rgb + 3 * i)) {
+        case PIXEL_NAN: image->bad.nan++; break;
+        case PIXEL_INFINITE: image->bad.infinite++; break;
+        case PIXEL_NEGATIVE: image->bad.negative++; break;
+        case PIXEL_GOOD: break;
+        }
     }
 }
 

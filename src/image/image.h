@@ -15,7 +15,12 @@ typedef struct image_file {
     const unsigned char *bytes;
     size_t size;
     uint64_t max_pixels;
+    uint32_t max_edge;  /* pixels each way; default: IMAGE_EDGE_LIMIT */
+    bool keep_encoding; /* only PNG and JPEG, and their values as they are stored, 0..1 but not linear */
 } image_file;
+
+/* Reads the picture that the file holds; its first bytes tell the kind. */
+helio_status image_decode(const image_file *file, helio_image **image);
 
 /* HELIO_ERR_DATA if a picture of this size is empty or too large, or if the file has fewer than least_bytes, the bytes
  * that the format needs at the very least for so many pixels. Call before memory is taken. */

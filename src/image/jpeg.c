@@ -79,7 +79,7 @@ static void read_rows(jpeg_decoder *decoder)
     struct jpeg_decompress_struct *library = &decoder->library;
     float linear[256];
     for (int i = 0; i < 256; i++)
-        linear[i] = srgb_decode((float)i / 255);
+        linear[i] = decoder->file->keep_encoding ? (float)i / 255 : srgb_decode((float)i / 255);
     jpeg_start_decompress(library);
     size_t samples = (size_t)library->output_components;
     while (library->output_scanline < library->output_height) {

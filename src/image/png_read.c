@@ -20,7 +20,7 @@ typedef struct png_decoder {
     size_t position; /* in file->bytes */
     helio_image *image;
     png_bytep rows;
-    float *linear; /* the sRGB curve for each sample value */
+    float *linear; /* what each sample value stands for */
 } png_decoder;
 
 static void on_error(png_structp library, png_const_charp message)
@@ -73,8 +73,10 @@ static helio_status make_curve(png_decoder *decoder, unsigned depth)
     decoder->linear = context_allocate(decoder->file->context, count, sizeof *decoder->linear);
     if (decoder->linear == NULL)
         return HELIO_ERR_MEMORY;
-    for (size_t i = 0; i < count; i++)
-        decoder->linear[i] = srgb_decode((float)i / (float)(count - 1));
+    for (size_t i = 0; i < count; i++) {
+        float encoded = (float)i / (float)(count - 1);
+        decoder->linear[i] = decoder->file->keep_encoding ? encoded : srgb_decode(encoded);
+    }
     return HELIO_OK;
 }
 

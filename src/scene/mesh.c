@@ -3,71 +3,15 @@
 
 #include "core/context.h"
 #include "core/error.h"
+#include "scene/texture.h"
 
 #include <string.h>
 
 /* A triangle counts as degenerate if its height is less than this part of its longest edge. */
 #define DEGENERATE_HEIGHT 1e-12
 
-/* Vertex normals whose sum cancels to less than this part of the summed angles have no direction worth the name. */
+/* Vertex normals whose sum cancels to less than this part of the summed weights have no direction worth the name. */
 #define CANCELLED_SUM 1e-4
-
-/* ---- checks ------------------------------------------------------------------------ */
-
-static helio_status check_pointers(const helio_mesh_desc *desc)
-{
-    if (desc->positions == NULL || desc->triangles == NULL)
-        return fail(HELIO_ERR_ARGUMENT, "helio_mesh_desc has no %s", desc->positions ? "triangles" : "positions");
-    if (desc->material_count != 0 && (desc->materials == NULL || desc->triangle_materials == NULL))
-        return fail(HELIO_ERR_ARGUMENT, "helio_mesh_desc has %u materials but no %s", desc->material_count,
-                    desc->materials ? "triangle_materials" : "array of them");
-    if (desc->material_count == 0 && desc->triangle_materials != NULL)
-        return fail(HELIO_ERR_ARGUMENT, "helio_mesh_desc has triangle_materials but material_count is 0");
-    if (desc->vertex_count == 0 || desc->triangle_count == 0)
-        return fail(HELIO_ERR_DATA, "a mesh of %u vertices and %u triangles is empty; give at least one of each",
-                    desc->vertex_count, desc->triangle_count);
-    if (desc->vertex_count > MESH_MAX_ELEMENTS || desc->triangle_count > MESH_MAX_ELEMENTS)
-        return fail(HELIO_ERR_DATA, "a mesh of %u vertices and %u triangles is too large; use at most %u of each",
-                    desc->vertex_count, desc->triangle_count, MESH_MAX_ELEMENTS);
-    return HELIO_OK;
-}
-
-static helio_status check_vertices(const helio_mesh_desc *desc)
-{
-    for (size_t i = 0; i < desc->vertex_count; i++)
-        for (size_t axis = 0; axis < 3; axis++) {
-            float value = desc->positions[3 * i + axis];
-            if (!(fabsf(value) <= MESH_MAX_COORDINATE))
-                return fail(HELIO_ERR_DATA, "vertex %zu has %c = %g; use finite numbers from %g to %g", i, "xyz"[axis],
-                            (double)value, -(double)MESH_MAX_COORDINATE, (double)MESH_MAX_COORDINATE);
-        }
-    return HELIO_OK;
-}
-
-static helio_status check_triangles(const helio_mesh_desc *desc)
-{
-    for (size_t i = 0; i < desc->triangle_count; i++) {
-        for (size_t corner = 0; corner < 3; corner++)
-            if (desc->triangles[3 * i + corner] >= desc->vertex_count)
-                return fail(HELIO_ERR_DATA, "triangle %zu names vertex %u; there are %u, counted from 0", i,
-                            desc->triangles[3 * i + corner], desc->vertex_count);
-        if (desc->material_count != 0 && desc->triangle_materials[i] >= desc->material_count)
-            return fail(HELIO_ERR_DATA, "triangle %zu names material %u; there are %u, counted from 0", i,
-                        desc->triangle_materials[i], desc->material_count);
-    }
-    return HELIO_OK;
-}
-
-static helio_status check_desc(const helio_mesh_desc *desc)
-{
-    HELIO_TRY(check_pointers(desc));
-    HELIO_TRY(check_vertices(desc));
-    HELIO_TRY(check_triangles(desc));
-    for (uint32_t i = 0; i < desc->material_count; i++)
-        if (helio_material_check(&desc->materials[i]) != HELIO_OK)
-            return fail(HELIO_ERR_DATA, "material %u: %s", i, helio_last_error());
-    return HELIO_OK;
-}
 
 /* ---- triangles --------------------------------------------------------------------- */
 
@@ -206,10 +150,12 @@ static helio_status find_first_vertices(helio_context *context, const helio_mesh
 
 /* ---- normals ------------------------------------------------------------------------- */
 
-/* Sum of the face normals around a place, weighted by angle, and of the angles. */
+/* Sum of the face normals around a place, and of their weights: angle x area. The angle alone would make the normal
+ * independent of how a flat part is cut into triangles, but lets slivers and folds, of which decimated scans are full,
+ * count as much as what they stick out of: they show as black specks. */
 typedef struct normal_sum {
     edge normal;
-    double angle;
+    double weight;
 } normal_sum;
 
 static double angle_between(edge a, edge b)
@@ -224,14 +170,15 @@ static void sum_normals(const helio_mesh *mesh, const uint32_t *first, normal_su
         edge edges[3], normal;
         if (!measure_triangle(mesh, i, edges, &normal))
             continue;
+        double area = edge_dot(edge_cross(edges[0], edges[1]), normal);
         for (uint32_t corner = 0; corner < 3; corner++) {
             edge in = edges[(corner + 2) % 3];
-            double angle = angle_between(edges[corner], (edge){-in.x, -in.y, -in.z});
+            double weight = area * angle_between(edges[corner], (edge){-in.x, -in.y, -in.z});
             normal_sum *sum = &sums[first[mesh->triangles[3 * (size_t)i + corner]]];
-            sum->normal.x += angle * normal.x;
-            sum->normal.y += angle * normal.y;
-            sum->normal.z += angle * normal.z;
-            sum->angle += angle;
+            sum->normal.x += weight * normal.x;
+            sum->normal.y += weight * normal.y;
+            sum->normal.z += weight * normal.z;
+            sum->weight += weight;
         }
     }
 }
@@ -264,7 +211,7 @@ static helio_status compute_normals(helio_context *context, helio_mesh *mesh)
         for (size_t i = 0; i < mesh->vertex_count; i++) {
             normal_sum sum = sums[first[i]];
             double size = sqrt(edge_dot(sum.normal, sum.normal));
-            if (!has_normal(mesh->normals + 3 * i) && size > CANCELLED_SUM * sum.angle)
+            if (!has_normal(mesh->normals + 3 * i) && size > CANCELLED_SUM * sum.weight)
                 vec3_to(
                     (vec3){(float)(sum.normal.x / size), (float)(sum.normal.y / size), (float)(sum.normal.z / size)},
                     mesh->normals + 3 * i);
@@ -312,6 +259,37 @@ static helio_status allocate_mesh(helio_context *context, const helio_mesh_desc 
     return mesh->triangle_materials && mesh->materials ? HELIO_OK : HELIO_ERR_MEMORY;
 }
 
+static void *copy_array(helio_context *context, const void *from, size_t count, size_t size)
+{
+    void *to = context_allocate(context, count, size);
+    if (to != NULL)
+        memcpy(to, from, count * size);
+    return to;
+}
+
+static helio_status fill_textures(helio_context *context, const helio_mesh_desc *desc, helio_mesh *mesh)
+{
+    if (desc->texture_coordinates != NULL &&
+        (mesh->texture_coordinates =
+             copy_array(context, desc->texture_coordinates, desc->vertex_count, 2 * sizeof(float))) == NULL)
+        return HELIO_ERR_MEMORY;
+    if (desc->texture_count == 0)
+        return HELIO_OK;
+    mesh->material_textures =
+        copy_array(context, desc->material_textures, desc->material_count, sizeof(helio_material_textures));
+    mesh->textures = context_allocate(context, desc->texture_count, sizeof(helio_texture));
+    if (mesh->material_textures == NULL || mesh->textures == NULL)
+        return HELIO_ERR_MEMORY;
+    for (uint32_t i = 0; i < desc->texture_count; i++) {
+        helio_texture texture = desc->textures[i];
+        texture.rgba = copy_array(context, texture.rgba, (size_t)texture.width * texture.height, 4);
+        if (texture.rgba == NULL)
+            return HELIO_ERR_MEMORY;
+        mesh->textures[mesh->texture_count++] = texture;
+    }
+    return HELIO_OK;
+}
+
 static helio_status fill_mesh(helio_context *context, const helio_mesh_desc *desc, helio_mesh *mesh)
 {
     size_t vertices = desc->vertex_count, triangles = desc->triangle_count;
@@ -325,6 +303,7 @@ static helio_status fill_mesh(helio_context *context, const helio_mesh_desc *des
         memcpy(mesh->triangle_materials, desc->triangle_materials, triangles * sizeof(uint32_t));
         memcpy(mesh->materials, desc->materials, desc->material_count * sizeof(helio_material));
     }
+    HELIO_TRY(fill_textures(context, desc, mesh));
     measure_bounds(mesh);
     count_degenerate(mesh);
     uint32_t missing = desc->normals ? copy_normals(mesh, desc->normals) : mesh->vertex_count;
@@ -339,7 +318,7 @@ helio_status helio_mesh_create(helio_context *context, const helio_mesh_desc *de
     *out = NULL;
     if (context == NULL || desc == NULL)
         return fail(HELIO_ERR_ARGUMENT, "helio_mesh_create needs a context and a desc");
-    HELIO_TRY(check_desc(desc));
+    HELIO_TRY(mesh_desc_check(desc));
     helio_mesh *mesh = context_allocate(context, 1, sizeof *mesh);
     if (mesh == NULL)
         return HELIO_ERR_MEMORY;
@@ -366,6 +345,10 @@ static helio_status load_mesh(helio_context *context, const char *path, helio_me
         .material_count = arrays.material_count,
         .triangle_materials = arrays.triangle_materials,
         .materials = arrays.materials,
+        .texture_coordinates = arrays.texture_coordinates,
+        .texture_count = arrays.texture_count,
+        .textures = arrays.textures,
+        .material_textures = arrays.material_textures,
     };
     helio_status status = helio_mesh_create(context, &desc, out);
     mesh_arrays_release(context, &arrays);
@@ -402,5 +385,10 @@ void helio_mesh_destroy(helio_context *context, helio_mesh *mesh)
     context_release(context, mesh->triangles);
     context_release(context, mesh->triangle_materials);
     context_release(context, mesh->materials);
+    context_release(context, mesh->texture_coordinates);
+    context_release(context, mesh->material_textures);
+    for (uint32_t i = 0; i < mesh->texture_count; i++)
+        texture_release(context, &mesh->textures[i]);
+    context_release(context, mesh->textures);
     context_release(context, mesh);
 }

@@ -15,10 +15,14 @@
  * 25 times the way to the moon. */
 #define MESH_MAX_COORDINATE 1e10f
 
+/* HELIO_ERR_ARGUMENT for arrays that are missing, HELIO_ERR_DATA, with the offending index, for what they hold. */
+helio_status mesh_desc_check(const helio_mesh_desc *desc);
+
 /* Unit normal of the counter-clockwise side. False for triangles without area: repeated or collinear corners. */
 bool mesh_triangle_normal(const helio_mesh *mesh, uint32_t triangle, vec3 *normal);
 
-/* Flat arrays, all memory of the context: the form in which an importer, in whatever process it runs, returns a file. */
+/* Flat arrays, all memory of the context: the form in which an importer, in whatever process it runs, returns a file.
+ */
 typedef struct mesh_arrays {
     uint32_t vertex_count, triangle_count, material_count;
     float *positions;             /* [vertex_count][3] */
@@ -26,6 +30,10 @@ typedef struct mesh_arrays {
     uint32_t *triangles;          /* [triangle_count][3] */
     uint32_t *triangle_materials; /* [triangle_count], or NULL if material_count is 0 */
     helio_material *materials;    /* [material_count], or NULL */
+    float *texture_coordinates;   /* [vertex_count][2], or NULL if texture_count is 0 */
+    uint32_t texture_count;
+    helio_texture *textures;                    /* [texture_count], or NULL */
+    helio_material_textures *material_textures; /* [material_count], or NULL */
 } mesh_arrays;
 
 /* Reads a file by assimp; in a build without it these two do not exist. On failure arrays holds nothing. */

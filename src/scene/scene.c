@@ -9,11 +9,12 @@
 
 #include <float.h>
 
-/* Hits of the ground beyond this, within a hair of the horizon, count as misses: their squares would not fit a float. */
+/* Hits of the ground beyond this, within a hair of the horizon, count as misses: their squares would not fit a float.
+ */
 #define GROUND_REACH 1e15f
 
-/* Shadow rays start this many roundings above the surface; see offset_origin(). With 2 the tests find spheres that shade
- * themselves, with 4 they find none. */
+/* Shadow rays start this many roundings above the surface; see offset_origin(). With 2 the tests find spheres that
+ * shade themselves, with 4 they find none. */
 #define OFFSET_ROUNDINGS 16.0f
 
 static const char *const NAMES[] = {"none", "plane", "shadow"};
@@ -71,6 +72,8 @@ helio_status helio_scene_create(helio_context *context, const helio_scene_desc *
     scene->own_materials = desc->material == NULL && desc->mesh->material_count != 0;
     scene->ground = desc->ground;
     scene->ground_material = (helio_material){.kind = HELIO_MATERIAL_DIFFUSE, .diffuse = {0.5f, 0.5f, 0.5f}};
+    scene->srgb = texture_curve_srgb();
+    scene->linear = texture_curve_linear();
     measure(scene);
     helio_status status = rays_create(context, desc->mesh, &scene->rays);
     if (status != HELIO_OK) {
@@ -99,6 +102,42 @@ static vec3 interpolate(const float *values, const uint32_t corners[3], const ra
     return add_scaled(add_scaled(scale(a, 1.0f - hit->u - hit->v), b, hit->u), c, hit->v);
 }
 
+static void interpolate_texture_coordinates(const helio_mesh *mesh, const rays_hit *hit, float uv[2])
+{
+    const uint32_t *corners = mesh->triangles + 3 * (size_t)hit->triangle;
+    const float weights[3] = {1.0f - hit->u - hit->v, hit->u, hit->v};
+    for (size_t axis = 0; axis < 2; axis++) {
+        uv[axis] = 0.0f;
+        for (size_t corner = 0; corner < 3; corner++)
+            uv[axis] += weights[corner] * mesh->texture_coordinates[2 * (size_t)corners[corner] + axis];
+    }
+}
+
+static helio_material material_at(const helio_scene *scene, const rays_hit *hit)
+{
+    const helio_mesh *mesh = scene->mesh;
+    if (!scene->own_materials)
+        return scene->material;
+    uint32_t number = mesh->triangle_materials[hit->triangle];
+    helio_material material = mesh->materials[number];
+    if (mesh->texture_count == 0)
+        return material;
+    helio_material_textures textures = mesh->material_textures[number];
+    float uv[2], rgb[3];
+    interpolate_texture_coordinates(mesh, hit, uv);
+    if (textures.base_colour != 0) {
+        texture_lookup(&mesh->textures[textures.base_colour - 1], &scene->srgb, uv[0], uv[1], rgb);
+        for (int c = 0; c < 3; c++)
+            material.diffuse[c] *= rgb[c];
+    }
+    if (textures.metallic_roughness != 0 && material.kind == HELIO_MATERIAL_GGX) {
+        texture_lookup(&mesh->textures[textures.metallic_roughness - 1], &scene->linear, uv[0], uv[1], rgb);
+        material.roughness *= rgb[1];
+        material.metallic *= rgb[2];
+    }
+    return material;
+}
+
 static bool intersect_mesh(const helio_scene *scene, vec3 origin, vec3 direction, scene_hit *hit)
 {
     const helio_mesh *mesh = scene->mesh;
@@ -119,8 +158,7 @@ static bool intersect_mesh(const helio_scene *scene, vec3 origin, vec3 direction
         .position = interpolate(mesh->positions, corners, &found), /* nearer to the surface than along the ray */
         .normal = smooth,
         .geometric_normal = face,
-        .material =
-            scene->own_materials ? &mesh->materials[mesh->triangle_materials[found.triangle]] : &scene->material,
+        .material = material_at(scene, &found),
     };
     return true;
 }
@@ -139,7 +177,7 @@ static bool intersect_ground(const helio_scene *scene, vec3 origin, vec3 directi
         .position = position,
         .normal = normal,
         .geometric_normal = normal,
-        .material = &scene->ground_material,
+        .material = scene->ground_material,
         .is_ground = true,
     };
     return true;
@@ -149,8 +187,8 @@ bool scene_intersect(const helio_scene *scene, vec3 origin, vec3 direction, scen
 {
     if (scene->ground == HELIO_GROUND_NONE)
         return intersect_mesh(scene, origin, direction, hit);
-    /* The whole mesh stands on the plane. So from below the plane comes first, and from above the mesh does, however close
-     * they are: no rounding can mix them up. */
+    /* The whole mesh stands on the plane. So from below the plane comes first, and from above the mesh does, however
+     * close they are: no rounding can mix them up. */
     if (origin.y < scene->ground_height)
         return direction.y > 0.0f && intersect_ground(scene, origin, direction, hit);
     return intersect_mesh(scene, origin, direction, hit) ||
@@ -160,10 +198,10 @@ bool scene_intersect(const helio_scene *scene, vec3 origin, vec3 direction, scen
 /* ---- shadows --------------------------------------------------------------------------- */
 
 /* Moves a point off its surface, so that the surface does not shade itself. What was computed lies off the true surface
- * by the roundings of its interpolation, a few for each coordinate and in proportion to the corners' coordinates, which are
- * at most the point's own plus the mesh's extent; the intersection with a neighbouring triangle adds some in proportion to
- * the extent. The offset is the length of this box of errors along the normal, with a margin: it follows the size
- * of the mesh and its distance from the origin, and is no larger than it must. */
+ * by the roundings of its interpolation, a few for each coordinate and in proportion to the corners' coordinates, which
+ * are at most the point's own plus the mesh's extent; the intersection with a neighbouring triangle adds some in
+ * proportion to the extent. The offset is the length of this box of errors along the normal, with a margin: it follows
+ * the size of the mesh and its distance from the origin, and is no larger than it must. */
 static vec3 offset_origin(const helio_scene *scene, vec3 position, vec3 normal)
 {
     float rounding = OFFSET_ROUNDINGS * 0.5f * FLT_EPSILON;

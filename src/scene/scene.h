@@ -5,6 +5,7 @@
 
 #include "core/vector.h"
 #include "cpu/rays.h"
+#include "scene/texture.h"
 
 #include <heliostat/scene.h>
 
@@ -13,7 +14,8 @@ struct helio_scene {
     const helio_mesh *mesh;
     rays *rays;
     helio_material material; /* of triangles, unless the mesh's own materials are used */
-    bool own_materials;      /* use those of the mesh */
+    bool own_materials;      /* use those of the mesh, with their textures */
+    texture_curve srgb, linear;
     helio_ground ground;
     helio_material ground_material;
     float ground_height; /* y of the plane: the mesh's lowest point */
@@ -25,13 +27,14 @@ struct helio_scene {
 typedef struct scene_hit {
     float distance;
     vec3 position;
-    vec3 normal;           /* for shading, interpolated; in the hemisphere of geometric_normal */
-    vec3 geometric_normal; /* of the surface itself, turned towards the ray's origin */
-    const helio_material *material;
+    vec3 normal;             /* for shading, interpolated; in the hemisphere of geometric_normal */
+    vec3 geometric_normal;   /* of the surface itself, turned towards the ray's origin */
+    helio_material material; /* at this point, textures included */
     bool is_ground;
 } scene_hit;
 
-/* What a ray meets first, and whether it meets anything; direction has unit length. The ground is seen from both sides. */
+/* What a ray meets first, and whether it meets anything; direction has unit length. The ground is seen from both sides.
+ */
 bool scene_intersect(const helio_scene *scene, vec3 origin, vec3 direction, scene_hit *hit);
 
 /* Is the light from this direction, of unit length, kept from a point that scene_intersect() found? Light from behind
