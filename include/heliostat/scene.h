@@ -71,8 +71,8 @@ typedef struct helio_mesh {
     uint32_t *triangles;           /* [triangle_count][3], indices of vertices, counter-clockwise from outside */
     uint32_t *triangle_materials;  /* [triangle_count], indices of materials; NULL if material_count is 0 */
     helio_material *materials;     /* [material_count]; NULL where the file brings none */
-    float bounds[2][3];            /* least and greatest corner */
-    bool has_file_normals;         /* false: the normals were computed, weighted by angle x area */
+    float bounds[2][3];            /* least and greatest corner, of the vertices that triangles use */
+    bool has_file_normals;         /* false: the normals were computed, weighted by angle; slivers less */
     uint32_t degenerate_triangles; /* triangles without area: kept, never hit */
     float *texture_coordinates;    /* [vertex_count][2], u and v; NULL where there are none */
     uint32_t texture_count;

@@ -150,9 +150,9 @@ static helio_status find_first_vertices(helio_context *context, const helio_mesh
 
 /* ---- normals ------------------------------------------------------------------------- */
 
-/* Sum of the face normals around a place, and of their weights: angle x area. The angle alone would make the normal
- * independent of how a flat part is cut into triangles, but lets slivers and folds, of which decimated scans are full,
- * count as much as what they stick out of: they show as black specks. */
+/* Sum of the face normals around a place, and of their weights: angle x roundness. The angle makes the normal
+ * independent of how a flat part is cut into triangles. Alone it lets slivers and folds, of which decimated scans are
+ * full, count as much as what they stick out of, and they show as black specks. */
 typedef struct normal_sum {
     edge normal;
     double weight;
@@ -164,16 +164,25 @@ static double angle_between(edge a, edge b)
     return atan2(sqrt(edge_dot(n, n)), edge_dot(a, b));
 }
 
+/* Height over the longest edge: 0.87 for equal sides, 0 for a needle. */
+static double roundness_of(const edge edges[3])
+{
+    edge n = edge_cross(edges[0], edges[1]);
+    double longest =
+        fmax(edge_dot(edges[0], edges[0]), fmax(edge_dot(edges[1], edges[1]), edge_dot(edges[2], edges[2])));
+    return sqrt(edge_dot(n, n)) / longest;
+}
+
 static void sum_normals(const helio_mesh *mesh, const uint32_t *first, normal_sum *sums)
 {
     for (uint32_t i = 0; i < mesh->triangle_count; i++) {
         edge edges[3], normal;
         if (!measure_triangle(mesh, i, edges, &normal))
             continue;
-        double area = edge_dot(edge_cross(edges[0], edges[1]), normal);
+        double roundness = roundness_of(edges);
         for (uint32_t corner = 0; corner < 3; corner++) {
             edge in = edges[(corner + 2) % 3];
-            double weight = area * angle_between(edges[corner], (edge){-in.x, -in.y, -in.z});
+            double weight = roundness * angle_between(edges[corner], (edge){-in.x, -in.y, -in.z});
             normal_sum *sum = &sums[first[mesh->triangles[3 * (size_t)i + corner]]];
             sum->normal.x += weight * normal.x;
             sum->normal.y += weight * normal.y;
