@@ -8,7 +8,8 @@
  *  - In a desc, 0 / NULL / false means the default written beside the field, so start from {0};
  *    only fields marked "required" must be set. The library keeps no pointer to a desc.
  *  - helio_x_create() and helio_x_load() give an object that you own; helio_x_destroy() accepts NULL.
- *    Destroy children before their parent: renderer, pools, tables, environment, scene, mesh, context.
+ *    Destroy children before their parent: renderer, pools, tables, environment, scene, mesh, context. Images and
+ * meshes are plain structs that know no context, so their destroy functions take it.
  *  - Array shapes are written [rows][columns][channels], row-major, without padding.
  *  - Directions are unit vectors, right-handed, +Y up. Densities are per steradian.
  *    Radiance is linear Rec. 709 RGB in the caller's own unit; results carry the same unit.

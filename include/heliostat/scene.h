@@ -18,7 +18,8 @@ typedef enum helio_material_kind {
     HELIO_MATERIAL_PHONG,       /* energy-conserving Lafortune-Phong:
                                    diffuse / pi + specular (n + 2) / (2 pi) cos^n about the mirror direction */
     HELIO_MATERIAL_GGX,         /* glTF 2.0 metallic-roughness: GGX, separable Smith, Schlick's Fresnel,
-                                   alpha = max(roughness^2, 1e-3) */
+                                   alpha = max(roughness^2, 1e-3). By glTF's formulas dielectrics seen at grazing
+                                   angles reflect more than they receive, see docs/method.md. */
 } helio_material_kind;
 
 typedef struct helio_material {
