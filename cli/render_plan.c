@@ -110,11 +110,21 @@ static int choose_mesh(render_plan *plan)
     return EXIT_CODE_OK;
 }
 
-/* Would the file be written? Better to know before the work than after it. */
-static int check_writable(const char *option_name, const char *path)
+/* Is this input the file that would be replaced, by whatever name? */
+static bool is_same_file(const char *input, const struct stat *output)
+{
+    struct stat status;
+    return input[0] != 0 && stat(input, &status) == 0 && status.st_dev == output->st_dev &&
+           status.st_ino == output->st_ino;
+}
+
+/* Would the file be written, and nothing that is needed be lost? Better to know before the work than after it. */
+static int check_writable(const render_plan *plan, const char *option_name, const char *path)
 {
     struct stat existing;
     bool exists = stat(path, &existing) == 0;
+    if (exists && (is_same_file(plan->source.path, &existing) || is_same_file(plan->mesh, &existing)))
+        return message_failure("%s would replace an input of this picture; give --%s another path", path, option_name);
     if (!exists && errno != ENOENT)
         return message_failure("%s cannot be written: %s; give --%s another path", path, strerror(errno), option_name);
     if (exists && !S_ISREG(existing.st_mode))
@@ -149,8 +159,8 @@ int render_plan_make(render_plan *plan, const cli_options *options)
     if (code == EXIT_CODE_OK)
         code = choose_mesh(plan);
     if (code == EXIT_CODE_OK)
-        code = check_writable("out", options->out);
+        code = check_writable(plan, "out", options->out);
     if (code == EXIT_CODE_OK && options->stats != NULL)
-        code = check_writable("stats", options->stats);
+        code = check_writable(plan, "stats", options->stats);
     return code;
 }

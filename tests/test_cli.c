@@ -481,6 +481,11 @@ static void test_failures_exit_1_and_leave_nothing(void **state)
     fails(SMALL "--out folder.png", 1, "directory");
     fails(SMALL "--out a.png --stats nowhere/a.json", 1, "--stats");
     assert_int_equal(count_files(), before);
+    /* An input is never replaced by what is made from it, whatever it is called. */
+    write_text("map.pfm", "PF\n1 1\n-1\n............");
+    fails("render --env map.pfm --mesh tetrahedron.obj --out ./map.pfm", 1, "replace an input");
+    fails(SMALL "--out a.png --stats tetrahedron.obj", 1, "replace an input");
+    assert_int_equal(count_files(), before + 1);
 }
 
 static void test_missing_assets_are_explained(void **state)
