@@ -5,6 +5,7 @@
 #include "message.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
@@ -144,6 +145,24 @@ static int check_writable(const render_plan *plan, const char *option_name, cons
     return EXIT_CODE_OK;
 }
 
+/* Options that are fine but change nothing here: people should not look for their effect. */
+static void warn_of_idle_options(const render_plan *plan)
+{
+    const cli_options *options = plan->options;
+    const char *strategy = helio_strategy_name(helio_strategy_resolve(plan->strategy));
+    bool by_face = strncmp(strategy, "face", 4) == 0, has_brdf = strstr(strategy, "+brdf") != NULL;
+    bool has_exposure = !isnan(options->exposure) || plan->tonemap != HELIO_TONEMAP_CLIP;
+    if (options->no_beta && !by_face)
+        message_warning("--no-beta changes nothing with --strategy %s", strategy);
+    if (options->brdf_share != 0.5 && !has_brdf)
+        message_warning("--brdf-share changes nothing with --strategy %s", strategy);
+    if (plan->layout != HELIO_LAYOUT_AUTO && plan->source.path[0] == 0)
+        message_warning("--layout changes nothing with --env %s", plan->source.label);
+    if (has_exposure && !has_extension(options->out, "png"))
+        message_warning("--exposure and --tonemap change nothing in %s: EXR and PFM hold radiance as it is",
+                        options->out);
+}
+
 int render_plan_make(render_plan *plan, const cli_options *options)
 {
     *plan = (render_plan){.options = options};
@@ -162,5 +181,7 @@ int render_plan_make(render_plan *plan, const cli_options *options)
         code = check_writable(plan, "out", options->out);
     if (code == EXIT_CODE_OK && options->stats != NULL)
         code = check_writable(plan, "stats", options->stats);
+    if (code == EXIT_CODE_OK)
+        warn_of_idle_options(plan);
     return code;
 }

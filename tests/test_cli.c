@@ -488,6 +488,28 @@ static void test_failures_exit_1_and_leave_nothing(void **state)
     assert_int_equal(count_files(), before + 1);
 }
 
+static void test_options_without_effect_are_told(void **state)
+{
+    (void)state;
+    needs_renderer();
+    static const struct {
+        const char *line, *word;
+    } table[] = {
+        {SMALL "--out idle.png --no-beta --strategy light", "--no-beta"},
+        {SMALL "--out idle.png --brdf-share 0.2 --strategy face", "--brdf-share"},
+        {SMALL "--out idle.png --layout latlong", "--layout"},
+        {SMALL "--out idle.exr --exposure 2", "--exposure"},
+        {SMALL "--out idle.pfm --ground shadow", "alpha"},
+    };
+    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
+        assert_int_equal(run(table[i].line), 0);
+        assert_non_null(strstr(err, "warning"));
+        assert_non_null(strstr(err, table[i].word));
+    }
+    assert_int_equal(run(SMALL "--out idle.png --no-beta --brdf-share 0.2 --exposure 1"), 0);
+    assert_string_equal(err, "");
+}
+
 static void test_missing_assets_are_explained(void **state)
 {
     (void)state;
@@ -765,6 +787,7 @@ int main(void)
         TEST(bad_command_lines_are_refused_in_one_sentence),
         TEST(usage_errors_come_before_files),
         TEST(failures_exit_1_and_leave_nothing),
+        TEST(options_without_effect_are_told),
         TEST(missing_assets_are_explained),
         TEST(full_disk_leaves_the_old_picture),
         TEST(interrupt_stops_without_a_picture),
