@@ -211,6 +211,15 @@ static int clean(void **state)
 }
 
 /* Pictures need a build that reads meshes and traces rays. */
+/* Pictures are PNG files unless a command line says otherwise. */
+static void needs_png(void)
+{
+#ifndef HELIO_WITH_PNG
+    print_message("skipped: this build has no PNG\n");
+    skip();
+#endif
+}
+
 static void needs_renderer(void)
 {
 #if !defined(HELIO_WITH_EMBREE) || !defined(HELIO_WITH_ASSIMP) || !defined(HELIO_WITH_PNG) ||                          \
@@ -366,6 +375,7 @@ static void test_readme_names_only_options_that_exist(void **state)
 static void test_bad_command_lines_are_refused_in_one_sentence(void **state)
 {
     (void)state;
+    needs_png();
     static const struct {
         const char *line, *word; /* that the sentence holds */
     } table[] = {
@@ -466,6 +476,7 @@ static void test_usage_errors_come_before_files(void **state)
 static void test_failures_exit_1_and_leave_nothing(void **state)
 {
     (void)state;
+    needs_png();
     write_text("bad.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100 +X 200\n");
     write_text("bad.obj", "this is no mesh\n");
     write_text("folder.txt", "");
@@ -513,6 +524,7 @@ static void test_options_without_effect_are_told(void **state)
 static void test_missing_assets_are_explained(void **state)
 {
     (void)state;
+    needs_png();
     setenv("HELIOSTAT_ASSETS", directory, 1);
     int without_map = run("render --mesh tetrahedron.obj");
     bool says_env = strstr(err, "--env") != NULL;
