@@ -40,6 +40,21 @@ static const feature features[] = {
 #endif
 };
 
+/* The instruction set that a context takes, and the others that this machine has kernels for. */
+static bool print_isa(void)
+{
+    helio_context *context;
+    const helio_context_desc desc = {.threads = 1};
+    if (helio_context_create(&desc, &context) != HELIO_OK)
+        return false;
+    printf("isa         %s (of", helio_context_isa(context));
+    for (uint32_t i = 0; helio_isa_name(i) != NULL; i++)
+        printf(" %s", helio_isa_name(i));
+    printf(")\n");
+    helio_context_destroy(context);
+    return true;
+}
+
 int command_info(const cli_options *options)
 {
     (void)options;
@@ -50,7 +65,8 @@ int command_info(const cli_options *options)
     printf("library     %u.%u.%u\n", version >> 16, version >> 8 & 0xff, version & 0xff);
     printf("processor   %s\n", processor);
     printf("cores       %u logical\n", machine_cores());
-    printf("isa         %s\n", machine_isa());
+    if (!print_isa())
+        return message_failure("%s", helio_last_error());
     printf("backends    cpu\n");
     printf("features\n");
     for (size_t i = 0; i < sizeof features / sizeof features[0]; i++)

@@ -224,6 +224,7 @@ static int write_stats(const render_job *job)
         .width = options->size[0],
         .height = options->size[1],
         .threads = helio_context_threads(job->context),
+        .isa = helio_context_isa(job->context),
         .passes = job->passes,
         .ev = (double)job->exposure,
     };

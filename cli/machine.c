@@ -40,8 +40,3 @@ void machine_processor(char *name, size_t size)
     }
     fclose(stream);
 }
-
-const char *machine_isa(void)
-{
-    return "scalar";
-}

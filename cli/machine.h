@@ -14,7 +14,4 @@ unsigned machine_cores(void);
 /* The processor's name, as its maker gives it; "unknown processor" where the system does not tell. */
 void machine_processor(char *name, size_t size);
 
-/* The instruction set that the library's kernels use. */
-const char *machine_isa(void);
-
 #endif

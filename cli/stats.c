@@ -67,7 +67,7 @@ static json_t *summary_object(const stats_frame *frames, size_t count, const sta
     json_object_set_new(object, "size", json_pack("[oo]", whole(summary->width), whole(summary->height)));
     json_object_set_new(object, "backend", json_string("cpu"));
     json_object_set_new(object, "device", json_string(processor));
-    json_object_set_new(object, "isa", json_string(machine_isa()));
+    json_object_set_new(object, "isa", json_string(summary->isa));
     json_object_set_new(object, "threads", whole(summary->threads));
     return object;
 }

@@ -17,7 +17,7 @@ typedef struct stats_frame {
 } stats_frame;
 
 typedef struct stats_summary {
-    const char *strategy;
+    const char *strategy, *isa;
     uint32_t spp, width, height, threads, passes;
     double ev; /* stops that a PNG of the last frame gets */
 } stats_summary;

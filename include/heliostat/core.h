@@ -89,6 +89,10 @@ typedef struct helio_context_desc {
     void (*parallel_for)(void *user, size_t count, helio_loop_body body, void *data);
 
     void *user; /* handed to the four functions above */
+
+    /* The instruction set that the kernels use, a name of helio_isa_name(). Default: what the environment variable
+     * HELIOSTAT_ISA names, else the best that the machine has. HELIO_ERR_UNSUPPORTED where the machine lacks it. */
+    const char *isa;
 } helio_context_desc;
 
 /* desc may be NULL: all defaults. */
@@ -97,6 +101,14 @@ HELIO_API void helio_context_destroy(helio_context *context);
 
 /* Threads that a parallel loop of this context uses, at least 1. */
 HELIO_API uint32_t helio_context_threads(const helio_context *context);
+
+/* The instruction set that this context's kernels use: "scalar", "sse2", "avx2", "avx512", or "simd" on processors that
+ * are not x86. Tables and pools have the same bits with each; images differ by no more than docs/method.md says. */
+HELIO_API const char *helio_context_isa(const helio_context *context);
+
+/* Name of the index-th instruction set that this build has kernels for and this machine runs, from the plainest
+ * ("scalar") to the best; NULL from their number on. */
+HELIO_API const char *helio_isa_name(uint32_t index);
 
 #ifdef __cplusplus
 }

@@ -129,8 +129,10 @@ typedef struct helio_shading_point {
                                   same seed use the same samples. */
 } helio_shading_point;
 
-/* Does light reach the point along this world-space direction? */
-typedef bool (*helio_visibility)(void *user, const helio_shading_point *point, const float direction[3]);
+/* Does light reach the point along these world-space directions? x, y and z: [count] each, one direction in three
+ * arrays as ray tracers like it; visible: [count], to be filled. count is 1..64. */
+typedef void (*helio_visibility)(void *user, const helio_shading_point *point, uint32_t count, const float *x,
+                                 const float *y, const float *z, bool *visible);
 
 typedef struct helio_estimate_desc {
     uint32_t samples; /* N_s, light + BRDF samples, 1..helio_pools_sample_limit(); default 64 or that limit */

@@ -15,6 +15,7 @@ enum { MAX_THREADS = 1024 };
 
 struct helio_context {
     helio_context_desc desc; /* with defaults resolved */
+    isa isa;
     pthread_mutex_t log_mutex;
     thread_pool pool;
     bool has_pool;
@@ -78,13 +79,16 @@ helio_status helio_context_create(const helio_context_desc *given, helio_context
         return fail(HELIO_ERR_ARGUMENT, "helio_context_create needs a place for the context");
     *out = NULL;
     helio_context_desc desc;
+    isa set;
     HELIO_TRY(resolve_desc(given, &desc));
+    HELIO_TRY(isa_choose(desc.isa, &set));
 
     helio_context *context = desc.allocate(desc.user, sizeof *context, CONTEXT_ALIGNMENT);
     if (context == NULL)
         return fail(HELIO_ERR_MEMORY, "no memory for a context");
     memset(context, 0, sizeof *context);
     context->desc = desc;
+    context->isa = set;
     pthread_mutex_init(&context->log_mutex, NULL);
 
     if (desc.parallel_for == NULL) {
@@ -120,6 +124,16 @@ void helio_context_destroy(helio_context *context)
 uint32_t helio_context_threads(const helio_context *context)
 {
     return context->desc.threads;
+}
+
+isa context_isa(const helio_context *context)
+{
+    return context->isa;
+}
+
+const char *helio_context_isa(const helio_context *context)
+{
+    return isa_name(context->isa);
 }
 
 void *context_allocate(helio_context *context, size_t count, size_t size)

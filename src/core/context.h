@@ -3,6 +3,8 @@
 #ifndef HELIOSTAT_SRC_CONTEXT_H
 #define HELIOSTAT_SRC_CONTEXT_H
 
+#include "core/isa.h"
+
 #include <heliostat/core.h>
 
 enum { CONTEXT_ALIGNMENT = 64 }; /* a cache line, and the widest vector register */
@@ -14,6 +16,9 @@ void context_release(helio_context *context, void *memory); /* NULL is fine */
 
 void context_log(helio_context *context, helio_log_level level, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+
+/* The instruction set of the kernels. */
+isa context_isa(const helio_context *context);
 
 /* Runs body for every index in [0, count) and waits for all. */
 void context_parallel_for(helio_context *context, size_t count, helio_loop_body body, void *data);

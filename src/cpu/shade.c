@@ -12,9 +12,12 @@ typedef struct tile_counts {
 /* The shadow catcher stands for any matte ground, so its own colour does not matter. */
 static const helio_material catcher_material = {.kind = HELIO_MATERIAL_DIFFUSE, .diffuse = {1, 1, 1}};
 
-static bool light_reaches(void *user, const helio_shading_point *point, const float direction[3])
+static void light_reaches(void *user, const helio_shading_point *point, uint32_t count, const float *x, const float *y,
+                          const float *z, bool *visible)
 {
-    return !scene_occluded(user, vec3_from(point->position), vec3_from(point->geometric_normal), vec3_from(direction));
+    vec3 position = vec3_from(point->position), normal = vec3_from(point->geometric_normal);
+    for (uint32_t i = 0; i < count; i++)
+        visible[i] = !scene_occluded(user, position, normal, (vec3){x[i], y[i], z[i]});
 }
 
 static helio_shading_point shading_point(const struct frame *frame, const primary_hit *hit, uint32_t pixel)

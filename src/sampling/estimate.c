@@ -206,22 +206,38 @@ static void add_contribution(float sum[3], const helio_sample *sample)
         sum[c] += sample->contribution[c];
 }
 
+/* Asks for all directions at once: ray tracers answer many faster than one by one. */
+static void find_visible(const helio_shading_point *point, const helio_estimate_desc *desc, const helio_sample *samples,
+                         const uint32_t *useful, uint32_t count, bool *visible)
+{
+    float x[BATCH], y[BATCH], z[BATCH];
+    for (uint32_t i = 0; i < count; i++) {
+        const float *direction = samples[useful[i]].direction;
+        x[i] = direction[0];
+        y[i] = direction[1];
+        z[i] = direction[2];
+    }
+    desc->visibility(desc->user, point, count, x, y, z, visible);
+}
+
 static void add_samples(const helio_shading_point *point, const helio_estimate_desc *desc, const helio_sample *samples,
                         uint32_t count, estimate_result *result)
 {
-    result->info.samples += count;
-    for (uint32_t i = 0; i < count; i++) {
-        if (!is_useful(&samples[i]))
-            continue;
-        result->info.useful++;
-        add_contribution(result->unoccluded, &samples[i]);
-        if (desc->visibility != NULL) {
-            result->info.rays++;
-            if (!desc->visibility(desc->user, point, samples[i].direction))
-                continue;
-        }
-        add_contribution(result->visible, &samples[i]);
+    uint32_t useful[BATCH], useful_count = 0;
+    bool visible[BATCH];
+    for (uint32_t i = 0; i < count; i++)
+        if (is_useful(&samples[i]))
+            useful[useful_count++] = i;
+    if (desc->visibility != NULL && useful_count > 0)
+        find_visible(point, desc, samples, useful, useful_count, visible);
+    for (uint32_t i = 0; i < useful_count; i++) {
+        add_contribution(result->unoccluded, &samples[useful[i]]);
+        if (desc->visibility == NULL || visible[i])
+            add_contribution(result->visible, &samples[useful[i]]);
     }
+    result->info.samples += count;
+    result->info.useful += useful_count;
+    result->info.rays += desc->visibility != NULL ? useful_count : 0;
 }
 
 void estimate_point(const helio_pools *pools, const helio_shading_point *point, const helio_estimate_desc *desc,

@@ -10,15 +10,7 @@
 #include "core/error.h"
 #include "core/name_list.h"
 #include "core/random.h"
-
-/* A row of the table holds R integers below 2^summand_bits; their sum, rounding included, stays below 2^32. */
-static int summand_bits(uint32_t count)
-{
-    int bits = 31;
-    for (uint32_t power = 1; power < count; power *= 2)
-        bits--;
-    return bits;
-}
+#include "sampling/kernels.h"
 
 /* ---- creation ---- */
 
@@ -82,49 +74,6 @@ void helio_tables_destroy(helio_tables *tables)
 
 /* ---- update ---- */
 
-/* Luminance x relative solid angle (solid_angles NULL: luminance alone). Relative to 4 / K sr, the largest that a texel
- * of a fine cube has, so that no product overflows. */
-static float texel_weight(const float rgb[3], const float *solid_angles, size_t column, float quarter_texels)
-{
-    float value = luminance(rgb);
-    return solid_angles ? value * (solid_angles[column] * quarter_texels) : value;
-}
-
-static bool is_lit(const float rgb[3])
-{
-    return rgb[0] > 0.0f || rgb[1] > 0.0f || rgb[2] > 0.0f;
-}
-
-/* The exponent e for which the largest weight x 2^e is below 2^bits, and nearly reaches it. At most 126, so that 2^e is
- * a normal float and a weight that a machine might flush to zero comes out as 0 or 1 in either case. */
-static int row_exponent(float largest, int bits)
-{
-    int exponent = 0;
-    frexpf(largest, &exponent);
-    return bits - exponent < 126 ? bits - exponent : 126;
-}
-
-/* Prefix sums of one row's weights. sums: [R + 1], or NULL if only the total is wanted. */
-static row_sum sum_row(const float *rgb, const float *solid_angles, uint32_t size, uint32_t *sums)
-{
-    float largest = 0.0f, quarter_texels = 0.25f * (float)size * (float)size;
-    for (size_t i = 0; i < size; i++)
-        largest = fmaxf(largest, texel_weight(rgb + i * 3, solid_angles, i, quarter_texels));
-    int exponent = row_exponent(largest, summand_bits(size));
-    float factor = ldexpf(1.0f, exponent);
-    uint32_t sum = 0;
-    for (size_t i = 0; i < size; i++) {
-        if (sums)
-            sums[i] = sum;
-        float weight = rintf(texel_weight(rgb + i * 3, solid_angles, i, quarter_texels) * factor);
-        if (is_lit(rgb + i * 3))
-            sum += weight > 1.0f ? (uint32_t)weight : 1u;
-    }
-    if (sums)
-        sums[size] = sum;
-    return (row_sum){sum, exponent};
-}
-
 static void build_row(void *data, size_t index)
 {
     helio_tables *tables = data;
@@ -132,6 +81,7 @@ static void build_row(void *data, size_t index)
     size_t size = tables->size, row = index % size;
     const float *rgb = environment->cube + index * size * 3;
     const float *solid_angles = environment->solid_angle + row * size;
+    sum_row_kernel sum_row = kernels_of(context_isa(environment->context))->sum_row;
     bool paper = tables->weighting == HELIO_WEIGHTING_PAPER;
     tables->row_sums[index] =
         sum_row(rgb, paper ? NULL : solid_angles, tables->size, tables->rows + index * (size + 1));
@@ -175,7 +125,7 @@ static uint32_t rescale(row_sum row, int to)
 /* Prefix sums over rows. sums: [count + 1], or NULL if only the total is wanted. */
 static row_sum sum_rows(const row_sum *rows, uint32_t count, uint32_t *sums)
 {
-    int exponent = common_exponent(rows, count, summand_bits(count));
+    int exponent = common_exponent(rows, count, tables_summand_bits(count));
     uint32_t sum = 0;
     for (uint32_t i = 0; i < count; i++) {
         if (sums)

@@ -13,6 +13,15 @@ typedef struct row_sum {
     int32_t exponent;
 } row_sum;
 
+/* A row of the table holds R integers below 2^bits; their sum, rounding included, stays below 2^32. */
+static inline int tables_summand_bits(uint32_t count)
+{
+    int bits = 31;
+    for (uint32_t power = 1; power < count; power *= 2)
+        bits--;
+    return bits;
+}
+
 struct helio_tables {
     const helio_environment *environment;
     helio_weighting weighting;

@@ -1,0 +1,33 @@
+# Builds the kernel files once for each instruction set; adds the objects to KERNEL_OBJECTS. The program chooses at run
+# time, so nothing but these files may be compiled for more than the target's baseline.
+
+set(KERNEL_SOURCES src/sampling/set_kernel.c src/sampling/tables_kernel.c)
+set(KERNEL_OBJECTS "")
+
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
+    target_compile_definitions(helio_flags INTERFACE HELIO_KERNELS_X86)
+    set(X86_KERNELS ON)
+else()
+    set(X86_KERNELS OFF)
+endif()
+
+# -fopenmp-simd: loops marked "omp simd", without a run-time library. -fno-trapping-math: comparisons may become
+# selections, as nobody looks at the floating-point flags.
+function(heliostat_kernels isa lanes)
+    add_library(kernels_${isa} OBJECT ${KERNEL_SOURCES})
+    target_include_directories(kernels_${isa} PRIVATE include src)
+    target_compile_definitions(kernels_${isa} PRIVATE HELIO_ISA=${isa} HELIO_LANES=${lanes} ${FEATURE_DEFINITIONS})
+    target_compile_options(kernels_${isa} PRIVATE $<$<CONFIG:Release>:-O3> -fno-trapping-math -fno-signed-zeros ${ARGN})
+    target_link_libraries(kernels_${isa} PRIVATE helio_flags)
+    set(KERNEL_OBJECTS ${KERNEL_OBJECTS} $<TARGET_OBJECTS:kernels_${isa}> PARENT_SCOPE)
+endfunction()
+
+heliostat_kernels(scalar 1 -Wno-unknown-pragmas -fno-tree-vectorize -fno-tree-slp-vectorize)
+if(X86_KERNELS)
+    heliostat_kernels(sse2 4 -fopenmp-simd)
+    heliostat_kernels(avx2 8 -fopenmp-simd -mavx2 -mfma)
+    heliostat_kernels(avx512 16 -fopenmp-simd -mavx512f -mavx512dq -mavx512bw -mavx512vl -mavx2 -mfma
+                      -mprefer-vector-width=512)
+else()
+    heliostat_kernels(simd 4 -fopenmp-simd)
+endif()
