@@ -4,6 +4,8 @@ BUILD = build
 PREFIX = /usr/local
 OUT = heliostat-demo.png
 DEPENDENCIES = yes
+SECONDS = 60
+TARGET =
 JOBS := $(shell nproc 2>/dev/null || echo 2)
 
 # Every test program prints the name of each of its tests, so show what they print.
@@ -16,7 +18,7 @@ install_dependencies = @:
 endif
 
 .NOTPARALLEL:
-.PHONY: all demo test test-long san tsan core format check-format lint install clean help
+.PHONY: all demo bench test test-long san tsan fuzz core format check-format lint install clean help
 .PHONY: dependencies-build dependencies-test dependencies-ci build-with-tests
 
 all: dependencies-build $(BUILD)/build.ninja
@@ -25,6 +27,10 @@ all: dependencies-build $(BUILD)/build.ninja
 demo: all
 	$(BUILD)/heliostat render --out $(OUT)
 	@echo "The picture is in $(abspath $(OUT))"
+
+# A minute or so; what it says of a busy machine is of little use.
+bench: all
+	@$(BUILD)/heliostat bench --json $(BUILD)/bench.json
 
 test: build-with-tests
 	@cd $(BUILD) && $(CTEST) --label-exclude long
@@ -39,7 +45,12 @@ san: dependencies-test build-asan/build.ninja
 # What shares data between threads, and by test_cli whole pictures: test_render would take ten times as long.
 tsan: dependencies-test build-tsan/build.ninja
 	@cmake --build build-tsan
-	@cd build-tsan && $(CTEST) --tests-regex '^test_(core|environment|tables|pools|cli)$$'
+	@cd build-tsan && $(CTEST) --tests-regex '^test_(core|environment|tables|pools|hostile|cli)$$'
+
+# Each target for so long, or one of them alone; docs/fuzzing.md tells more.
+fuzz: dependencies-ci build-fuzz/build.ninja
+	@cmake --build build-fuzz
+	@scripts/fuzz.sh build-fuzz $(SECONDS) $(TARGET)
 
 # Only the sampling core: libm and threads, no other library.
 core: dependencies-test build-core/build.ninja
@@ -62,13 +73,16 @@ install: dependencies-build $(BUILD)/build.ninja
 	@cmake --install $(BUILD)
 
 clean:
-	rm -rf build build-asan build-tsan build-core build-gcc build-clang
+	rm -rf build build-asan build-tsan build-fuzz build-core build-gcc build-clang
 
 help:
 	@echo 'make                        builds $(BUILD)/heliostat'
 	@echo 'make demo [OUT=PICTURE]     builds, lights a dragon with a sunrise and says where the picture is'
+	@echo 'make bench                  builds and measures every stage; figures also go to $(BUILD)/bench.json'
 	@echo 'make test                   builds and runs the tests; make test-long: those that take longer'
 	@echo 'make san, tsan              the same tests with address and undefined, thread sanitizers'
+	@echo 'make fuzz [SECONDS=60] [TARGET=NAME]'
+	@echo '                            feeds the parsers with damaged input, so long for each of them or for one'
 	@echo 'make core                   builds and tests the sampling core without any other library'
 	@echo 'make format, check-format   formats the code, or tells where it is not formatted'
 	@echo 'make lint                   clang-tidy and cppcheck'

@@ -21,6 +21,7 @@ const cli_command *command_find(const char *name);
 
 /* Each does its work and returns the exit code. */
 int command_render(const cli_options *options);
+int command_bench(const cli_options *options);
 int command_info(const cli_options *options);
 int command_help(const cli_options *options);
 

@@ -110,7 +110,8 @@ static bool load_environment(render_job *job)
 {
     environment_pixels pixels;
     double start = machine_milliseconds();
-    helio_status status = environment_source_read(&job->plan.source, job->context, &pixels);
+    helio_status status =
+        environment_source_read(&job->plan.source, job->context, job->plan.options->max_pixels, &pixels);
     job->frame.source_ms = machine_milliseconds() - start;
     if (status == HELIO_OK)
         status = make_environment(job, &pixels);
@@ -126,8 +127,12 @@ static bool load_environment(render_job *job)
 
 static bool load_scene(render_job *job)
 {
+    const cli_options *options = job->plan.options;
+    const helio_mesh_load_desc limits = {.max_memory = (uint64_t)options->max_mesh_memory << 20,
+                                         .max_seconds = options->max_mesh_seconds,
+                                         .max_pixels = options->max_pixels};
     double start = machine_milliseconds();
-    if (helio_mesh_load(job->context, job->plan.mesh, &job->mesh) != HELIO_OK)
+    if (helio_mesh_load(job->context, job->plan.mesh, &limits, &job->mesh) != HELIO_OK)
         return false;
     double loaded = machine_milliseconds();
     helio_scene_desc desc = {

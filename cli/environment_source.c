@@ -98,13 +98,14 @@ int environment_source_parse(const char *specification, environment_source *sour
     return EXIT_CODE_OK;
 }
 
-helio_status environment_source_read(const environment_source *source, helio_context *context,
+helio_status environment_source_read(const environment_source *source, helio_context *context, uint64_t max_pixels,
                                      environment_pixels *pixels)
 {
     *pixels = (environment_pixels){.width = 1, .height = 1, .rgb = source->constant};
     if (source->path[0] == 0)
         return HELIO_OK;
-    helio_status status = helio_image_read(context, source->path, NULL, &pixels->image);
+    const helio_image_read_desc desc = {.max_pixels = max_pixels, .without_alpha = true};
+    helio_status status = helio_image_read(context, source->path, &desc, &pixels->image);
     if (status != HELIO_OK)
         return status;
     const helio_image *image = pixels->image;

@@ -24,7 +24,8 @@ typedef struct environment_pixels {
     helio_image *image;   /* NULL for a constant */
 } environment_pixels;
 
-helio_status environment_source_read(const environment_source *source, helio_context *context,
+/* max_pixels: as in helio_image_read_desc. */
+helio_status environment_source_read(const environment_source *source, helio_context *context, uint64_t max_pixels,
                                      environment_pixels *pixels);
 void environment_pixels_release(environment_pixels *pixels, helio_context *context);
 

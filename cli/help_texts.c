@@ -54,6 +54,7 @@ static const help_entry examples[] = {
     {"heliostat render --ground shadow --out shot.exr --aovs",
      "object and shadow with alpha and layers, for compositing"},
     {"heliostat render --strategy light --stats light.json", "another strategy, with times and counts"},
+    {"heliostat bench --stages tables,frame --json bench.json", "how fast this machine is"},
 };
 const help_section help_examples = {"Examples", examples, COUNT(examples)};
 

@@ -12,6 +12,7 @@
 const cli_command command_table[] = {
     {"render", COMMAND_RENDER, "render [options]", "light a mesh by an environment map and write the picture",
      command_render},
+    {"bench", COMMAND_BENCH, "bench [options]", "measure how fast each stage is on this machine", command_bench},
     {"info", COMMAND_INFO, "info", "show the version, what this build can do, and the processor", command_info},
     {"help", COMMAND_HELP, "help [command] [--man]", "print the help of a command, or the manual page", command_help},
 };

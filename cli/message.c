@@ -4,11 +4,22 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+/* Names and texts of files may hold control characters, ASCII's and U+0080 to U+009F, which a terminal would obey. */
+static void clean(char *text)
+{
+    for (unsigned char *c = (unsigned char *)text; *c != 0; c++)
+        if (*c < ' ' || *c == 0x7f)
+            *c = '?';
+        else if (*c == 0xc2 && c[1] >= 0x80 && c[1] <= 0x9f)
+            *c = c[1] = '?';
+}
+
 /* One call of fprintf for the whole line, so that lines of different threads do not mix. */
 static void print_line(const char *kind, const char *format, va_list arguments)
 {
     char sentence[8192];
     vsnprintf(sentence, sizeof sentence, format, arguments);
+    clean(sentence);
     fprintf(stderr, "heliostat: %s%s\n", kind, sentence);
 }
 

@@ -12,8 +12,17 @@ enum {
     COMMAND_RENDER = 1 << 0,
     COMMAND_INFO = 1 << 1,
     COMMAND_HELP = 1 << 2,
-    COMMAND_ALL = COMMAND_RENDER | COMMAND_INFO | COMMAND_HELP
+    COMMAND_BENCH = 1 << 3,
+    COMMAND_ALL = COMMAND_RENDER | COMMAND_INFO | COMMAND_HELP | COMMAND_BENCH
 };
+
+/* Lists, separated by commas, that bench walks through; some are single values in other commands. */
+typedef struct bench_options {
+    const char *stages, *isas, *threads, *env_sizes, *map_sizes, *spp, *strategies, *materials, *mesh_sizes;
+    const char *json;
+    uint32_t repeat;
+    bool quick;
+} bench_options;
 
 /* What the command line says. A pointer that is NULL means that the option was not given and has no fixed default. */
 typedef struct cli_options {
@@ -33,6 +42,10 @@ typedef struct cli_options {
     const char *background, *tonemap, *out, *stats;
     double exposure; /* stops; NaN means auto */
     bool aovs;
+
+    uint32_t max_pixels, max_mesh_memory, max_mesh_seconds; /* 0: not given; memory in MiB */
+
+    bench_options bench;
 
     const char *backend;
     uint32_t threads; /* 0: one per logical core */
@@ -58,6 +71,7 @@ typedef enum option_group {
     GROUP_SCENE,
     GROUP_SAMPLING,
     GROUP_PICTURE,
+    GROUP_BENCH,
     GROUP_PROGRAM,
     GROUP_COUNT
 } option_group;

@@ -3,14 +3,12 @@
 
 #include "asset.h"
 #include "message.h"
+#include "output_file.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 static const char SHIPPED_MESH[] = "dragon.ply.gz";
 
@@ -111,40 +109,6 @@ static int choose_mesh(render_plan *plan)
     return EXIT_CODE_OK;
 }
 
-/* Is this input the file that would be replaced, by whatever name? */
-static bool is_same_file(const char *input, const struct stat *output)
-{
-    struct stat status;
-    return input[0] != 0 && stat(input, &status) == 0 && status.st_dev == output->st_dev &&
-           status.st_ino == output->st_ino;
-}
-
-/* Would the file be written, and nothing that is needed be lost? Better to know before the work than after it. */
-static int check_writable(const render_plan *plan, const char *option_name, const char *path)
-{
-    struct stat existing;
-    bool exists = stat(path, &existing) == 0;
-    if (exists && (is_same_file(plan->source.path, &existing) || is_same_file(plan->mesh, &existing)))
-        return message_failure("%s would replace an input of this picture; give --%s another path", path, option_name);
-    if (!exists && errno != ENOENT)
-        return message_failure("%s cannot be written: %s; give --%s another path", path, strerror(errno), option_name);
-    if (exists && !S_ISREG(existing.st_mode))
-        return message_failure("%s is %s; give --%s the name of a file", path,
-                               S_ISDIR(existing.st_mode) ? "a directory" : "a device or pipe, which cannot be replaced",
-                               option_name);
-    char directory[4096] = ".";
-    const char *slash = strrchr(path, '/');
-    if (slash != NULL && (size_t)(slash - path) + 1 < sizeof directory)
-        snprintf(directory, sizeof directory, "%.*s", (int)(slash - path) + 1, path);
-    if (access(directory, F_OK) != 0)
-        return message_failure("%s cannot be written: there is no folder %s; make it, or give --%s another path", path,
-                               directory, option_name);
-    if (access(directory, W_OK | X_OK) != 0)
-        return message_failure("%s cannot be written: no permission to write in %s; give --%s another path", path,
-                               directory, option_name);
-    return EXIT_CODE_OK;
-}
-
 /* Options that are fine but change nothing here: people should not look for their effect. */
 static void warn_of_idle_options(const render_plan *plan)
 {
@@ -177,10 +141,11 @@ int render_plan_make(render_plan *plan, const cli_options *options)
         code = environment_source_parse(options->env, &plan->source);
     if (code == EXIT_CODE_OK)
         code = choose_mesh(plan);
+    const char *const inputs[] = {plan->source.path, plan->mesh, NULL};
     if (code == EXIT_CODE_OK)
-        code = check_writable(plan, "out", options->out);
+        code = output_file_check("out", options->out, inputs);
     if (code == EXIT_CODE_OK && options->stats != NULL)
-        code = check_writable(plan, "stats", options->stats);
+        code = output_file_check("stats", options->stats, inputs);
     if (code == EXIT_CODE_OK)
         warn_of_idle_options(plan);
     return code;

@@ -21,8 +21,8 @@ endmacro()
 
 if(HELIO_WITH_OPENEXR)
     heliostat_find(OPENEXR libopenexr-dev OpenEXR 3.1 CONFIG QUIET)
-    list(APPEND SOURCES src/image/exr_channels.c src/image/exr_read.c src/image/exr_rgba.c src/image/exr_window.c
-         src/image/exr_write.c)
+    list(APPEND SOURCES src/image/exr_channels.c src/image/exr_head.c src/image/exr_read.c src/image/exr_rgba.c
+         src/image/exr_window.c src/image/exr_write.c)
     list(APPEND FEATURE_DEFINITIONS HELIO_WITH_OPENEXR=1)
     list(APPEND FEATURE_LIBRARIES OpenEXR::OpenEXRCore OpenEXR::OpenEXR)
 endif()
@@ -44,7 +44,8 @@ endif()
 if(HELIO_WITH_ASSIMP)
     heliostat_find(ASSIMP libassimp-dev assimp CONFIG QUIET)
     heliostat_find(ASSIMP zlib1g-dev ZLIB QUIET) # for .ply.gz
-    list(APPEND SOURCES src/scene/gzip.c src/scene/mesh_assimp.c src/scene/mesh_materials.c src/scene/mesh_textures.c)
+    list(APPEND SOURCES src/scene/gzip.c src/scene/mesh_arrays.c src/scene/mesh_assimp.c src/scene/mesh_child.c
+         src/scene/mesh_materials.c src/scene/mesh_process.c src/scene/mesh_receipt.c src/scene/mesh_textures.c)
     list(APPEND FEATURE_DEFINITIONS HELIO_WITH_ASSIMP=1)
     list(APPEND FEATURE_LIBRARIES assimp::assimp ZLIB::ZLIB)
 endif()

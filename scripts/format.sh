@@ -9,4 +9,4 @@ case ${1-} in
     --check) set -- --dry-run --Werror ;;
     *) echo "usage: $0 [--check]" >&2; exit 2 ;;
 esac
-find include src cli tests examples -name '*.[ch]' -exec clang-format "$@" {} +
+find include src cli tests examples fuzz -name '*.[ch]' -exec clang-format "$@" {} +

@@ -29,6 +29,7 @@ build libjansson-dev - statistics in JSON
 test libcmocka-dev - tests
 test g++ g++ testing the headers in C++
 ci clang clang a second compiler
+ci libclang-rt-dev - sanitizers and libFuzzer for clang
 ci clang-format clang-format code style
 ci clang-tidy clang-tidy static analysis
 ci cppcheck cppcheck static analysis'

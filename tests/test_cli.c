@@ -237,7 +237,8 @@ static void needs_renderer(void)
     "--env=constant:1,1,1 --layout=auto --env-size=8 --rotate=-30.5 --flip --intensity=2 --mesh=tetrahedron.obj "      \
     "--material=file --camera=auto --ground=plane --spp=16 --aa=2 --strategy=face+brdf --brdf-share=0.25 "             \
     "--weighting=paper --no-beta --decorrelate=none --visibility=none --seed=7 --size=32x24 --out=all.exr --aovs "     \
-    "--background=env --exposure=-1.5 --tonemap=clip --stats=all.json --backend=cpu --threads=2 --verbose"
+    "--background=env --exposure=-1.5 --tonemap=clip --stats=all.json --max-pixels=1 "                                 \
+    "--max-mesh-memory=300 --max-mesh-seconds=60 --backend=cpu --threads=2 --verbose"
 
 /* Is --name there as a word of its own? */
 static bool mentions(const char *text, const char *name)
@@ -423,6 +424,10 @@ static void test_bad_command_lines_are_refused_in_one_sentence(void **state)
         {"render --intensity 0", "--intensity"},
         {"render --intensity -1", "-1"},
         {"render --brdf-share 1", "0.999"},
+        {"render --max-pixels 0", "1 to 268435456"},
+        {"render --max-pixels 8192x8192", "8192x8192"},
+        {"render --max-mesh-memory 0", "1 to 16777216"},
+        {"render --max-mesh-seconds 1.5", "1.5"},
         {"render --exposure bright", "auto"},
         {"render --exposure inf", "inf"},
         {"render --strategy faces", "face+brdf"},
@@ -538,18 +543,79 @@ static void test_missing_assets_are_explained(void **state)
     assert_int_equal(count_files(), 1);
 }
 
+static void test_limits_name_their_option(void **state)
+{
+    (void)state;
+    needs_renderer();
+    write_text("map.pfm", "PF\n2 1\n-1\n012301230123012301230123");
+    fails(SMALL "--env map.pfm --max-pixels 1", 1, "map.pfm is too large: 2 x 1 pixels, where 1 in all are allowed");
+    assert_non_null(strstr(err, "--max-pixels"));
+    succeeds(SMALL "--env map.pfm --max-pixels 2");
+}
+
+static void expect_old(const char *path)
+{
+    char text[8];
+    assert_int_equal(read_text(path, text, sizeof text), 3);
+    assert_string_equal(text, "old");
+}
+
 /* What a full disk does, by a limit on the size of files. */
 static void test_full_disk_leaves_the_old_picture(void **state)
 {
     (void)state;
     needs_renderer();
-    write_text("a.pfm", "old");
-    file_size_limit = 2000;
-    fails(SMALL "--out a.pfm", 1, "a.pfm");
-    char text[8];
-    assert_int_equal(read_text("a.pfm", text, sizeof text), 3);
-    assert_string_equal(text, "old");
-    assert_int_equal(count_files(), 2);
+    static const struct {
+        const char *line, *name;
+    } table[] = {
+        {SMALL "--out a.pfm", "a.pfm"},
+        {SMALL "--out a.exr --aovs --size 200x200", "a.exr"},
+        {SMALL "--out a.png --size 400x400 --exposure -3", "a.png"},
+    };
+    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
+        clean(state);
+        write_text(table[i].name, "old");
+        file_size_limit = 2000;
+        fails(table[i].line, 1, table[i].name);
+        expect_old(table[i].name);
+        assert_int_equal(count_files(), 2);
+    }
+}
+
+/* The picture is then written already, and stays. */
+static void test_full_disk_leaves_the_old_stats(void **state)
+{
+    (void)state;
+    needs_renderer();
+    write_text("a.json", "old");
+    file_size_limit = 600;
+    fails("render --env constant:1,1,1 --mesh tetrahedron.obj --size 2x2 --env-size 8 -q --out a.pfm --stats a.json", 1,
+          "a.json");
+    expect_old("a.json");
+    assert_int_equal(count_files(), 3);
+}
+
+static void test_only_files_are_written_to(void **state)
+{
+    (void)state;
+    needs_renderer();
+    assert_int_equal(mkfifo("pipe.png", 0600), 0);
+    assert_int_equal(symlink("/dev/full", "full.png"), 0);
+    size_t before = count_files();
+    fails(SMALL "--out pipe.png", 1, "pipe.png is a device or pipe");
+    fails(SMALL "--out full.png", 1, "full.png is a device or pipe");
+    fails(SMALL "--stats /dev/full", 1, "/dev/full is a device or pipe");
+    assert_int_equal(count_files(), before);
+}
+
+/* No file can be made in /proc, not even by the superuser, who otherwise may write everywhere. */
+static void test_folders_that_cannot_be_written_are_told(void **state)
+{
+    (void)state;
+    needs_renderer();
+    size_t before = count_files();
+    fails(SMALL "--out /proc/a.png", 1, "/proc/a.png cannot be written");
+    assert_int_equal(count_files(), before);
 }
 
 static void wait_for(const char *word)
@@ -577,6 +643,69 @@ static void test_interrupt_stops_without_a_picture(void **state)
         assert_non_null(strstr(err, "nothing was written to a.png"));
         assert_int_equal(count_files(), 1);
     }
+}
+
+static void check_size(const char *path, uint32_t width, uint32_t height)
+{
+    helio_context *context = NULL;
+    helio_image *image = NULL;
+    assert_int_equal(helio_context_create(NULL, &context), HELIO_OK);
+    if (helio_image_read(context, path, NULL, &image) != HELIO_OK)
+        fail_msg("%s", helio_last_error());
+    assert_int_equal(image->width, width);
+    assert_int_equal(image->height, height);
+    helio_image_destroy(context, image);
+    helio_context_destroy(context);
+}
+
+/* Is there a file that is being written? */
+static bool sees_temporary(void)
+{
+    DIR *stream = opendir(".");
+    bool found = false;
+    for (struct dirent *entry; stream != NULL && (entry = readdir(stream)) != NULL;)
+        found |= strncmp(entry->d_name, ".heliostat-", 11) == 0;
+    closedir(stream);
+    return found;
+}
+
+/* Long enough in writing, so that signals arrive amid it. */
+#define LONG_WRITE                                                                                                     \
+    "render --env constant:1,1,1 --mesh tetrahedron.obj --size 600x600 --env-size 8 --spp 1 --visibility none "        \
+    "--aovs --out a.exr"
+
+static pid_t start_writing(void)
+{
+    write_text("a.exr", "old");
+    pid_t child = start(LONG_WRITE);
+    for (int i = 0; i < 12000 && !sees_temporary(); i++)
+        usleep(5000);
+    return child;
+}
+
+static void test_signal_amid_writing_leaves_no_half_picture(void **state)
+{
+    (void)state;
+    needs_renderer();
+    pid_t child = start_writing();
+    kill(child, SIGTERM);
+    int code = finish(child);
+    assert_false(sees_temporary());
+    assert_int_equal(count_files(), 2);
+    if (code == 0)
+        check_size("a.exr", 600, 600);
+    else
+        expect_old("a.exr");
+}
+
+static void test_kill_amid_writing_keeps_the_old_picture(void **state)
+{
+    (void)state;
+    needs_renderer();
+    pid_t child = start_writing();
+    kill(child, SIGKILL);
+    assert_int_equal(finish(child), -SIGKILL);
+    expect_old("a.exr");
 }
 
 /* ---- pictures --------------------------------------------------------------------------- */
@@ -806,8 +935,14 @@ int main(void)
         TEST(failures_exit_1_and_leave_nothing),
         TEST(options_without_effect_are_told),
         TEST(missing_assets_are_explained),
+        TEST(limits_name_their_option),
         TEST(full_disk_leaves_the_old_picture),
+        TEST(full_disk_leaves_the_old_stats),
+        TEST(only_files_are_written_to),
+        TEST(folders_that_cannot_be_written_are_told),
         TEST(interrupt_stops_without_a_picture),
+        TEST(signal_amid_writing_leaves_no_half_picture),
+        TEST(kill_amid_writing_keeps_the_old_picture),
         TEST(white_furnace_in_all_formats),
         TEST(exposure_depends_on_the_map_alone),
         TEST(png_has_alpha_where_it_means_something),

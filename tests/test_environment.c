@@ -683,6 +683,242 @@ static void openexr_strip_is_oriented_as_openexr_says(void **state)
     }
 }
 
+/* ---- against plain sums ------------------------------------------------------------------------- */
+
+/* What hygiene makes of a pixel. */
+static void clean_by_hand(float rgb[3])
+{
+    bool dark = false;
+    for (int c = 0; c < 3; c++)
+        dark |= isnan(rgb[c]) || fabs((double)rgb[c]) > (double)1e30f;
+    for (int c = 0; c < 3; c++)
+        rgb[c] = dark || !(rgb[c] > 0) ? 0 : rgb[c];
+}
+
+/* Puts a fault into one channel of some pixels: each with this chance, and the last one. */
+static void add_faults(map *m, double chance, uint64_t seed)
+{
+    const float faults[] = {NAN, INFINITY, -INFINITY, 2e30f, -1, -0.0f, -2e30f, -NAN};
+    size_t pixels = (size_t)m->width * m->height;
+    for (size_t i = 0; i < pixels; i++)
+        if (i + 1 == pixels || random_unit(&seed) < chance)
+            m->rgb[i * 3 + random_bits(&seed) % 3] = faults[random_bits(&seed) % 8];
+}
+
+static map copy_cleaned(const map *m)
+{
+    map cleaned = make_map(m->layout, m->width, m->height);
+    memcpy(cleaned.rgb, m->rgb, (size_t)m->width * m->height * 3 * sizeof(float));
+    for (size_t i = 0; i < (size_t)m->width * m->height; i++)
+        clean_by_hand(cleaned.rgb + i * 3);
+    return cleaned;
+}
+
+/* Rows with faults are read by other code than those without, and both sum in the same order. */
+static void expect_same_as_cleaned(helio_layout layout, uint32_t width, uint32_t height, uint32_t size, double chance)
+{
+    map m = make_random_map(layout, width, height, 41);
+    add_faults(&m, chance, 42);
+    map cleaned = copy_cleaned(&m);
+    helio_environment *a = make_from_map(shared_context, &m, size, NULL);
+    helio_environment *b = make_from_map(shared_context, &cleaned, size, NULL);
+    if (memcmp(helio_environment_cube(a), helio_environment_cube(b), (size_t)18 * size * size * sizeof(float)) != 0)
+        fail_msg("%s %ux%u at R = %u: faults (%g of the pixels) change other pixels", helio_layout_name(layout), width,
+                 height, size, chance);
+    helio_environment_destroy(a);
+    helio_environment_destroy(b);
+    free(m.rgb);
+    free(cleaned.rgb);
+}
+
+static void maps_with_faults_give_the_bits_of_cleaned_ones(void **state)
+{
+    (void)state;
+    const uint32_t sizes[] = {1, 2, 5, 16, 33};
+    const double chances[] = {0, 0.003, 0.1, 1};
+    for (size_t i = 0; i < 20; i++) {
+        uint32_t size = sizes[i / 4];
+        double chance = chances[i % 4];
+        for (int k = 0; k < SHAPES; k++)
+            expect_same_as_cleaned(shapes[k].layout, shapes[k].width, shapes[k].height, size, chance);
+        expect_same_as_cleaned(HELIO_LAYOUT_LATLONG, 300, 150, size, chance);
+        expect_same_as_cleaned(HELIO_LAYOUT_LATLONG, 301, 40, size, chance);
+        expect_same_as_cleaned(HELIO_LAYOUT_STRIP, 64, 384, size, chance);
+        expect_same_as_cleaned(HELIO_LAYOUT_STRIP_OPENEXR, 65, 390, size, chance);
+    }
+}
+
+/* A rectangle of a face, and the planes through the origin that bound it: inside are all d with planes d >= 0. */
+typedef struct plain_texel {
+    uint32_t face;
+    double u[2], v[2];
+    double planes[4][3];
+} plain_texel;
+
+static plain_texel make_plain_texel(uint32_t face, uint32_t row, uint32_t column, uint32_t size)
+{
+    plain_texel t = {.face = face,
+                     .u = {2.0 * column / size - 1, 2.0 * (column + 1) / size - 1},
+                     .v = {2.0 * row / size - 1, 2.0 * (row + 1) / size - 1}};
+    double middle[3];
+    face_direction(face, 0.5 * (t.u[0] + t.u[1]), 0.5 * (t.v[0] + t.v[1]), middle);
+    for (int i = 0; i < 4; i++) {
+        double a[3], b[3], inside = 0;
+        face_direction(face, t.u[i % 2], t.v[i / 2], a);
+        face_direction(face, t.u[i == 0 || i == 1], t.v[i == 1 || i == 3], b);
+        for (int c = 0; c < 3; c++) {
+            t.planes[i][c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
+            inside += t.planes[i][c] * middle[c];
+        }
+        for (int c = 0; c < 3; c++)
+            t.planes[i][c] *= inside < 0 ? -1 : 1;
+    }
+    return t;
+}
+
+/* Sines of the latitudes between which a meridian is in the texel. false: it is not. */
+static bool cut_meridian(const plain_texel *t, double longitude, double *low, double *high)
+{
+    double least = -HUGE_VAL, greatest = HUGE_VAL; /* tangent of latitude */
+    for (int i = 0; i < 4; i++) {
+        double a = t->planes[i][0] * sin(longitude) + t->planes[i][2] * cos(longitude), b = t->planes[i][1];
+        if (fabs(b) < 1e-12 ? a < 0 : false)
+            return false;
+        if (fabs(b) >= 1e-12 && b > 0)
+            least = fmax(least, -a / b);
+        if (fabs(b) >= 1e-12 && b < 0)
+            greatest = fmin(greatest, -a / b);
+    }
+    *low = sin(atan(least));
+    *high = sin(atan(greatest));
+    return least < greatest;
+}
+
+/* Positions, in columns from the left of the map on and across its edge, between which the texel lies: those of its
+ * corners, or all if it holds a pole. */
+static void find_positions(const map *m, const plain_texel *t, double *first, double *last)
+{
+    double d[3], low, high;
+    bool holds_pole = true;
+    for (int i = 0; i < 4; i++)
+        holds_pole &= cut_meridian(t, (i + 0.5) * PI / 2, &low, &high);
+    face_direction(t->face, 0.5 * (t->u[0] + t->u[1]), 0.5 * (t->v[0] + t->v[1]), d);
+    double middle = (0.5 - atan2(d[0], d[2]) / (2 * PI)) * m->width + m->width;
+    *first = holds_pole ? m->width : middle;
+    *last = holds_pole ? 2 * m->width : middle;
+    for (int i = 0; i < 4 && !holds_pole; i++) {
+        face_direction(t->face, t->u[i % 2], t->v[i / 2], d);
+        if (d[0] == 0 && d[2] == 0)
+            continue;
+        double position = (0.5 - atan2(d[0], d[2]) / (2 * PI)) * m->width;
+        position -= m->width * round((position - middle) / m->width);
+        *first = fmin(*first, position);
+        *last = fmax(*last, position);
+    }
+}
+
+/* Adds what the texel covers of the pixels that a meridian crosses. */
+static void add_meridian(const map *m, const plain_texel *t, uint32_t column, double position, double width,
+                         double sum[4])
+{
+    double low, high;
+    if (!cut_meridian(t, PI * (1 - 2 * position / m->width), &low, &high))
+        return;
+    for (uint32_t row = 0; row < m->height; row++) {
+        double height = fmin(high, cos(PI * row / m->height)) - fmax(low, cos(PI * (row + 1) / m->height));
+        if (!(height > 0))
+            continue;
+        sum[3] += height * width;
+        for (int c = 0; c < 3; c++)
+            sum[c] += height * width * (double)m->rgb[((size_t)row * m->width + column) * 3 + (size_t)c];
+    }
+}
+
+/* Average of the map over a texel, by meridians in what it covers of each column. */
+static void plain_latlong_average(const map *m, const plain_texel *t, double average[3])
+{
+    enum { MERIDIANS = 100 };
+    double first, last, sum[4] = {0, 0, 0, 0};
+    find_positions(m, t, &first, &last);
+    for (double column = floor(first); column < last; column++) {
+        double from = fmax(first, column), width = (fmin(last, column + 1) - from) / MERIDIANS;
+        for (int i = 0; i < MERIDIANS; i++)
+            add_meridian(m, t, (uint32_t)column % m->width, from + (i + 0.5) * width, width, sum);
+    }
+    for (int c = 0; c < 3; c++)
+        average[c] = sum[c] / sum[3];
+}
+
+/* The same for a strip, whose pixels cut rectangles out of a texel. OpenEXR's s and t are +-u and +-v. */
+static void plain_strip_average(const map *m, const plain_texel *t, double average[3])
+{
+    uint32_t size = face_size(m);
+    bool openexr = m->layout == HELIO_LAYOUT_STRIP_OPENEXR, pole = t->face == 2 || t->face == 3;
+    double *borders = calloc(size + 1, sizeof *borders), whole = 0, sum[3] = {0, 0, 0};
+    assert_non_null(borders);
+    fill_borders(borders, size, openexr);
+    for (uint32_t pixel = 0; pixel < size * size; pixel++) {
+        uint32_t row = pixel / size, column = pixel % size;
+        uint32_t i = openexr && pole ? size - 1 - row : row, k = openexr && !pole ? size - 1 - column : column;
+        const double u[2] = {fmax(t->u[0], borders[column]), fmin(t->u[1], borders[column + 1])};
+        const double v[2] = {fmax(t->v[0], borders[row]), fmin(t->v[1], borders[row + 1])};
+        if (u[0] >= u[1] || v[0] >= v[1])
+            continue;
+        double area = integrate(one, 0, t->face, u, v);
+        uint32_t map_row = m->height > m->width ? t->face * size + i : i;
+        uint32_t map_column = m->height > m->width ? k : t->face * size + k;
+        whole += area;
+        for (int c = 0; c < 3; c++)
+            sum[c] += area * (double)m->rgb[((size_t)map_row * m->width + map_column) * 3 + (size_t)c];
+    }
+    free(borders);
+    for (int c = 0; c < 3; c++)
+        average[c] = sum[c] / whole;
+}
+
+static void expect_plain_sums(const map *m, uint32_t size, double tolerance)
+{
+    map cleaned = copy_cleaned(m);
+    helio_environment *environment = make_from_map(shared_context, m, size, NULL);
+    for (uint32_t texel = 0; texel < 6 * size * size; texel++) {
+        uint32_t face = texel / (size * size), row = texel / size % size, column = texel % size;
+        plain_texel t = make_plain_texel(face, row, column, size);
+        double average[3];
+        if (m->layout == HELIO_LAYOUT_LATLONG)
+            plain_latlong_average(&cleaned, &t, average);
+        else
+            plain_strip_average(&cleaned, &t, average);
+        for (int c = 0; c < 3; c++) {
+            double value = (double)texel_of(environment, face, row, column)[c];
+            if (!(fabs(value - average[c]) <= tolerance))
+                fail_msg("%s %ux%u at R = %u: face %u (%u, %u)[%d] is %.8g instead of %.8g",
+                         helio_layout_name(m->layout), m->width, m->height, size, face, row, column, c, value,
+                         average[c]);
+        }
+    }
+    helio_environment_destroy(environment);
+    free(cleaned.rgb);
+}
+
+/* Random pixels from 0 to 1, with faults. The sums for lat-long maps are quadratures and err by some 1e-4 of a pixel;
+ * those for strips are exact. */
+static void texels_equal_plain_sums(void **state)
+{
+    (void)state;
+    const uint32_t sizes[] = {1, 2, 3, 6, 7};
+    const map more[] = {{HELIO_LAYOUT_LATLONG, 16, 8, NULL}, {HELIO_LAYOUT_LATLONG, 24, 11, NULL},
+                        {HELIO_LAYOUT_LATLONG, 10, 6, NULL}, {HELIO_LAYOUT_LATLONG, 4, 40, NULL},
+                        {HELIO_LAYOUT_STRIP, 90, 15, NULL},  {HELIO_LAYOUT_STRIP_OPENEXR, 15, 90, NULL}};
+    enum { MORE = sizeof more / sizeof *more };
+    for (int i = 0; i < 5 * (SHAPES + MORE); i++) {
+        const map *shape = i / 5 < SHAPES ? &shapes[i / 5] : &more[i / 5 - SHAPES];
+        map m = make_random_map(shape->layout, shape->width, shape->height, (uint64_t)i);
+        add_faults(&m, 0.05, (uint64_t)i);
+        expect_plain_sums(&m, sizes[i % 5], m.layout == HELIO_LAYOUT_LATLONG ? 3e-4 : 1e-6);
+        free(m.rgb);
+    }
+}
+
 /* ---- pictures that others made ---------------------------------------------------------------- */
 
 static void need_openexr(void)
@@ -1116,14 +1352,12 @@ static void auto_exposure_of_a_small_sun_follows_its_flux(void **state)
     }
 }
 
-static void info_sums_up_the_cube(void **state)
+static void expect_sums_of_the_cube(uint32_t size)
 {
-    (void)state;
     map m = make_random_map(HELIO_LAYOUT_LATLONG, 64, 32, 60);
     helio_environment_info info;
-    const uint32_t size = 9;
     helio_environment *environment = make_from_map(shared_context, &m, size, &info);
-    double borders[10], total = 0, brightest = 0;
+    double borders[301], total = 0, brightest = 0;
     fill_borders(borders, size, false);
     for (uint32_t face = 0; face < 6; face++) {
         double flux = 0;
@@ -1142,6 +1376,14 @@ static void info_sums_up_the_cube(void **state)
     assert_int_equal(info.bad.nan + info.bad.infinite + info.bad.negative, 0);
     helio_environment_destroy(environment);
     free(m.rgb);
+}
+
+static void info_sums_up_the_cube(void **state)
+{
+    (void)state;
+    const uint32_t sizes[] = {1, 3, 9, 300};
+    for (size_t i = 0; i < 4; i++)
+        expect_sums_of_the_cube(sizes[i]);
 }
 
 static void updates_start_new_frames(void **state)
@@ -1329,6 +1571,8 @@ int main(void)
         cmocka_unit_test(smooth_radiance_keeps_its_values),
         cmocka_unit_test(strip_of_the_same_size_is_copied),
         cmocka_unit_test(openexr_strip_is_oriented_as_openexr_says),
+        cmocka_unit_test(maps_with_faults_give_the_bits_of_cleaned_ones),
+        cmocka_unit_test(texels_equal_plain_sums),
         cmocka_unit_test(orientation_pictures_agree),
         cmocka_unit_test(wavy_lines_agree),
         cmocka_unit_test(stage_pictures_agree),

@@ -342,6 +342,33 @@ static void test_display_window_crops_and_frames(void **state)
     assert_int_equal(f->warnings, 0);
 }
 
+static void test_alpha_can_be_left_out(void **state)
+{
+    fixture *f = *state;
+    static float planes[4][PIXELS];
+    static ImfHalf halves[4][PIXELS];
+    make_planes(planes, halves);
+    exr_source source = {.channels = {{"A", EXR_PIXEL_FLOAT, planes[3], false},
+                                      {"B", EXR_PIXEL_FLOAT, planes[2], false},
+                                      {"G", EXR_PIXEL_FLOAT, planes[1], false},
+                                      {"R", EXR_PIXEL_FLOAT, planes[0], false}},
+                         .compression = EXR_COMPRESSION_ZIP,
+                         .data = BOX(0, 0, WIDTH - 1, HEIGHT - 1),
+                         .display = BOX(0, 0, WIDTH - 1, HEIGHT - 1)};
+    for (int shift = 0; shift < 2; shift++) {
+        source.display.max.x = WIDTH - 1 + shift; /* also where the windows differ */
+        const char *path = write_exr(f, &source);
+        helio_image *image;
+        assert_int_equal(helio_image_read(f->context, path, &(helio_image_read_desc){.without_alpha = true}, &image),
+                         HELIO_OK);
+        assert_null(image->alpha);
+        for (int c = 0; c < 3; c++)
+            assert_float_equal(image->rgb[3 * 7 + c], planes[c][7], 0);
+        helio_image_destroy(f->context, image);
+        unlink(path);
+    }
+}
+
 static void test_absurd_display_windows_are_ignored(void **state)
 {
     static const exr_attr_box2i_t windows[] = {BOX(1000, 1000, 1010, 1010), BOX(0, 0, 999999, 999999),
@@ -580,6 +607,33 @@ static void test_bombs_take_no_memory(void **state)
     unlink(path);
 }
 
+/* A tile as large as the picture is in memory three times while it is decoded. */
+static void test_huge_tiles_count_as_pixels(void **state)
+{
+    enum { EDGE = 5000 };
+    const int32_t corner[2] = {EDGE - 1, EDGE - 1}, tile[2] = {EDGE, EDGE};
+    fixture *f = *state;
+    char path[512];
+    write_small(f, EXR_COMPRESSION_ZIP, true, path);
+    size_t size;
+    unsigned char *bytes = read_file(path, &size), *at = find_window(bytes, size);
+    memcpy(at, corner, sizeof corner);
+    while (memcmp(at, "tiledesc\0\x09\0\0\0", 13) != 0 && (size_t)(at - bytes) + 32 < size)
+        at++;
+    memcpy(at + 13, tile, sizeof tile);
+    write_file(path, bytes, size);
+    f->largest = 0;
+    helio_image *image;
+    assert_int_equal(helio_image_read(f->context, path, &(helio_image_read_desc){.max_pixels = EDGE * EDGE}, &image),
+                     HELIO_ERR_DATA);
+    assert_non_null(strstr(helio_last_error(), "MiB to be decoded"));
+    expect_failure(f, path, HELIO_ERR_DATA); /* by default the tile is granted, but the file is too short for it */
+    assert_non_null(strstr(helio_last_error(), "truncated or damaged"));
+    assert_true(f->largest < 100000);
+    free(bytes);
+    unlink(path);
+}
+
 /* ---- helio_picture_write ---- */
 
 static void test_written_pictures_keep_every_bit(void **state)
@@ -767,6 +821,7 @@ int main(void)
         TEST(test_first_part_with_colours_is_read),
         TEST(test_missing_channels_are_listed),
         TEST(test_display_window_crops_and_frames),
+        TEST(test_alpha_can_be_left_out),
         TEST(test_absurd_display_windows_are_ignored),
         TEST(test_chromaticities_are_converted),
         TEST(test_dwa_and_luminance_chroma),
@@ -774,6 +829,7 @@ int main(void)
         TEST(test_truncated_files_are_refused),
         TEST(test_changed_bytes_do_no_harm),
         TEST(test_bombs_take_no_memory),
+        TEST(test_huge_tiles_count_as_pixels),
         TEST(test_written_pictures_keep_every_bit),
         TEST(test_layers_are_written),
         TEST(test_captured_maps_have_known_values),

@@ -123,6 +123,24 @@ static void test_pixel_limit_is_kept(void **state)
     unlink(path);
 }
 
+/* 8200 x 8200 pixels are more than any file may have unasked, but this one has as many bytes. */
+static void test_large_files_may_have_many_pixels(void **state)
+{
+    static const char head[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8200 +X 8200\n";
+    fixture *f = *state;
+    const char *path = fixture_path(f, "large.hdr");
+    write_file(path, head, sizeof head - 1);
+    expect_failure(f, path, HELIO_ERR_DATA);
+    assert_non_null(strstr(helio_last_error(), "where 67108864 in all are allowed"));
+    assert_non_null(strstr(helio_last_error(), "max_pixels"));
+    assert_int_equal(truncate(path, 8200L * 8200), 0); /* without taking room on the disk */
+    f->allowed = 2;                                    /* the bytes and the picture, but not its pixels */
+    expect_failure(f, path, HELIO_ERR_MEMORY);
+    assert_non_null(strstr(helio_last_error(), "8200 x 8200"));
+    f->allowed = SIZE_MAX;
+    unlink(path);
+}
+
 /* ---- PFM ---- */
 
 /* Head, then floats with their bytes in the order asked for. */
@@ -313,6 +331,15 @@ static void test_png_rgb_and_alpha_of_8_bits(void **state)
     assert_float_equal(image->alpha[1], 1, 0);
     assert_int_equal(bad_pixels(image), 0);
     helio_image_destroy(f->context, image);
+
+    const char *path = fixture_path(f, "test.png");
+    write_png(path, &(png_source){1, 2, 8, PNG_COLOR_TYPE_RGB_ALPHA, false, rgba, 4, -1});
+    assert_int_equal(helio_image_read(f->context, path, &(helio_image_read_desc){.without_alpha = true}, &image), 0);
+    unlink(path);
+    assert_null(image->alpha);
+    for (int i = 0; i < 6; i++)
+        assert_float_equal(image->rgb[i], srgb_decode((float)rgb[i] / 255), 0);
+    helio_image_destroy(f->context, image);
 }
 
 static void test_png_of_16_bits(void **state)
@@ -453,6 +480,32 @@ static void test_cmyk_jpeg_is_refused(void **state)
     write_jpeg(path, samples, 8, 4, JCS_CMYK, false);
     expect_failure(f, path, HELIO_ERR_DATA);
     assert_non_null(strstr(helio_last_error(), "CMYK"));
+    unlink(path);
+}
+
+/* Scans that add nothing take a few bytes each, and time for all pixels. */
+static void test_jpeg_of_endless_scans_is_refused(void **state)
+{
+    fixture *f = *state;
+    JSAMPLE samples[16 * 16 * 3] = {0};
+    char path[512];
+    snprintf(path, sizeof path, "%s", fixture_path(f, "scans.jpg"));
+    write_jpeg(path, samples, 16, 3, JCS_RGB, true);
+    size_t size, last = 0;
+    unsigned char *bytes = read_file(path, &size);
+    for (size_t i = 0; i + 1 < size; i++)
+        if (bytes[i] == 0xff && bytes[i + 1] == 0xda)
+            last = i;
+    assert_true(last > 0);
+    FILE *stream = fopen(path, "wb");
+    fwrite(bytes, 1, last, stream);
+    for (int i = 0; i < 10000; i++)
+        fwrite(bytes + last, 1, size - 2 - last, stream);
+    fwrite(bytes + size - 2, 1, 2, stream);
+    fclose(stream);
+    free(bytes);
+    expect_failure(f, path, HELIO_ERR_DATA);
+    assert_non_null(strstr(helio_last_error(), "scans"));
     unlink(path);
 }
 
@@ -752,6 +805,7 @@ int main(void)
         TEST(test_reading_checks_its_arguments),
         TEST(test_files_that_are_no_pictures),
         TEST(test_pixel_limit_is_kept),
+        TEST(test_large_files_may_have_many_pixels),
         TEST(test_pfm_heads),
         TEST(test_grey_pfm_becomes_rgb),
         TEST(test_bad_pixels_are_counted_and_kept),
@@ -769,6 +823,7 @@ int main(void)
 #if HELIO_WITH_JPEG
         TEST(test_jpeg_colour_and_grey),
         TEST(test_cmyk_jpeg_is_refused),
+        TEST(test_jpeg_of_endless_scans_is_refused),
         TEST(test_damaged_jpeg_is_refused),
 #endif
         TEST(test_paths_to_write_are_checked),

@@ -3,7 +3,11 @@
  * Whole pictures of small scenes: what every pixel should hold, and that it does not depend on threads or strategy. */
 #include "support.h"
 
+#include "core/isa.h"
 #include "core/vector.h"
+#include "cpu/background.h"
+#include "sampling/kernels.h"
+#include "scene/camera.h"
 
 #include <heliostat/heliostat.h>
 
@@ -12,6 +16,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 enum { MAP_WIDTH = 32, MAP_HEIGHT = 16, WIDTH = 64, HEIGHT = 48, PIXELS = WIDTH * HEIGHT };
 
@@ -542,31 +547,275 @@ static void every_frame_is_lit_by_its_own_map(void **state)
     helio_context_destroy(context);
 }
 
-static bool stop_at_half(void *user, float done)
+/* ---- frames that stop ---- */
+
+/* Longer than a frame works before it tells its progress, so that each thread gets one tile done in between. */
+static void run_late(void *user, size_t count, helio_loop_body body, void *data)
 {
-    float *last = user;
-    assert_true(done >= *last && done <= 1.0f);
-    *last = done;
-    return done < 0.5f;
+    (void)user;
+    nanosleep(&(struct timespec){.tv_nsec = 100000000}, NULL);
+    for (size_t i = 0; i < count; i++)
+        body(data, i);
 }
 
-static void progress_is_told_and_can_stop_the_frame(void **state)
+enum { TILES = 3, TILE_WIDTH = 16, STRIP = TILES * TILE_WIDTH * TILE_WIDTH };
+
+typedef struct stop {
+    int calls, last_call;
+    float done;
+} stop;
+
+static bool stop_at_call(void *user, float done)
+{
+    stop *s = user;
+    assert_true(done > s->done && done <= 1.0f);
+    s->done = done;
+    return ++s->calls < s->last_call;
+}
+
+/* A picture of three tiles side by side, stopped at some call of the progress function. */
+static helio_frame_info render_stopped(const setup *s, int last_call, float rgba[STRIP * 4])
+{
+    stop at = {.last_call = last_call};
+    helio_frame_info info;
+    helio_frame_desc desc = {.camera = s->camera, .progress = stop_at_call, .user = &at};
+    assert_ok(helio_renderer_render(s->renderer, &desc, &info));
+    assert_int_equal(at.calls, last_call);
+    memcpy(rgba, helio_renderer_picture(s->renderer).rgba, STRIP * 4 * sizeof *rgba);
+    return info;
+}
+
+/* Do `count` tiles, from the first on, hold the same bits? */
+static bool same_tiles(const float *a, const float *b, int first, int count)
+{
+    for (int y = 0; y < TILE_WIDTH; y++) {
+        size_t start = (size_t)(y * TILES + first) * TILE_WIDTH * 4;
+        if (memcmp(a + start, b + start, (size_t)count * TILE_WIDTH * 4 * sizeof *a) != 0)
+            return false;
+    }
+    return true;
+}
+
+static setup make_strip(uint32_t aa)
+{
+    static float map[MAP_HEIGHT][MAP_WIDTH][3];
+    helio_context *context;
+    assert_ok(helio_context_create(&(helio_context_desc){.threads = 1, .parallel_for = run_late}, &context));
+    fill_sunny(map);
+    return make_setup(context, make_sphere, &white, HELIO_GROUND_PLANE, map,
+                      (helio_renderer_desc){.spp = 8, .aa = aa, .width = TILES * TILE_WIDTH, .height = TILE_WIDTH});
+}
+
+static void a_stopped_frame_holds_what_it_got(void **state)
 {
     (void)state;
-    helio_context *context = make_context(1, NULL);
-    float map[MAP_HEIGHT][MAP_WIDTH][3], last = 0;
-    fill_sunny(map);
-    setup s = make_setup(context, make_sphere, &white, HELIO_GROUND_PLANE, map,
-                         (helio_renderer_desc){.spp = 8, .width = 640, .height = 480});
+    static float whole[STRIP * 4], part[STRIP * 4];
+    static const float nothing[STRIP * 4];
+    setup s = make_strip(1);
+    assert_true(render_stopped(&s, 2, part).stopped);
+    assert_true(same_tiles(part, nothing, 2, 1));
+    /* The hits of the last tile are not known yet: the next frame traces all again, and the one after it none. */
     helio_frame_info info;
-    helio_frame_desc desc = {.camera = s.camera, .progress = stop_at_half, .user = &last};
-    assert_ok(helio_renderer_render(s.renderer, &desc, &info));
-    assert_true(info.stopped);
-    assert_true(last >= 0.5f && last < 0.9f);
-    helio_picture picture = helio_renderer_picture(s.renderer);
-    assert_true(picture.rgba[3] == 1.0f);                 /* done */
-    assert_true(picture.rgba[640 * 480 * 4 - 1] == 0.0f); /* not reached */
+    memcpy(whole, render(&s, 0, &info).rgba, sizeof whole);
+    assert_int_equal(info.camera_rays, STRIP);
+    assert_true(same_tiles(part, whole, 0, 2));
+    assert_false(same_tiles(whole, nothing, 2, 1));
+    assert_true(render_stopped(&s, 1, part).stopped);
+    assert_true(same_tiles(part, whole, 0, 1) && same_tiles(part, nothing, 1, 2));
+    render(&s, 0, &info);
+    assert_int_equal(info.camera_rays, 0);
     destroy_setup(&s);
+    helio_context_destroy(s.context);
+
+    /* Two steps: after the first, then with one tile of the second. */
+    static float first[STRIP * 4];
+    s = make_strip(2);
+    memcpy(whole, render(&s, 0, NULL).rgba, sizeof whole);
+    assert_true(render_stopped(&s, 3, first).stopped);
+    assert_true(render_stopped(&s, 4, part).stopped);
+    assert_false(same_tiles(first, whole, 0, 1) || same_tiles(first, nothing, 0, 1));
+    assert_true(same_tiles(part, whole, 0, 1) && same_tiles(part, first, 1, 2));
+    assert_true(render_stopped(&s, 1, part).stopped);
+    assert_true(same_tiles(part, first, 0, 1) && same_tiles(part, nothing, 1, 2));
+    destroy_setup(&s);
+    helio_context_destroy(s.context);
+}
+
+/* ---- hits and sums ---- */
+
+static void hits_are_kept_while_the_camera_stays(void **state)
+{
+    (void)state;
+    static float fresh[PIXELS * 4], moved[PIXELS * 4];
+    helio_context *context = make_context(2, NULL);
+    float map[MAP_HEIGHT][MAP_WIDTH][3];
+    fill_sunny(map);
+    for (int ground = HELIO_GROUND_NONE; ground <= HELIO_GROUND_SHADOW; ground++) {
+        setup s = make_setup(context, make_sphere, &glossy, (helio_ground)ground, map,
+                             (helio_renderer_desc){.spp = 200, .aovs = ground == HELIO_GROUND_PLANE});
+        helio_frame_info info;
+        memcpy(fresh, render(&s, 3, &info).rgba, sizeof fresh);
+        assert_int_equal(info.camera_rays, PIXELS);
+        assert_memory_equal(fresh, render(&s, 3, &info).rgba, sizeof fresh);
+        assert_int_equal(info.camera_rays, 0);
+        helio_frame_desc desc = {.camera = s.camera, .seed = 3, .retrace = true};
+        assert_ok(helio_renderer_render(s.renderer, &desc, &info));
+        assert_int_equal(info.camera_rays, PIXELS);
+        assert_memory_equal(fresh, helio_renderer_picture(s.renderer).rgba, sizeof fresh);
+        s.camera.eye[0] += 0.25f;
+        memcpy(moved, render(&s, 3, &info).rgba, sizeof moved);
+        assert_int_equal(info.camera_rays, PIXELS);
+        assert_memory_not_equal(fresh, moved, sizeof fresh);
+        s.camera.eye[0] -= 0.25f;
+        assert_memory_equal(fresh, render(&s, 3, &info).rgba, sizeof fresh);
+        destroy_setup(&s);
+    }
+    setup s =
+        make_setup(context, make_sphere, &glossy, HELIO_GROUND_NONE, map, (helio_renderer_desc){.spp = 8, .aa = 3});
+    helio_frame_info info;
+    for (int frame = 0; frame < 2; frame++) { /* each camera sample takes the place of the one before */
+        render(&s, 0, &info);
+        assert_int_equal(info.camera_rays, 3 * PIXELS);
+    }
+    destroy_setup(&s);
+    helio_context_destroy(context);
+}
+
+static float largest_difference(const float *a, const float *b, int count)
+{
+    float largest = 0;
+    for (int i = 0; i < count; i++)
+        if (!(isinf(a[i]) && isinf(b[i]))) /* depth of the sky */
+            largest = fmaxf(largest, fabsf(a[i] - b[i]));
+    return largest;
+}
+
+/* A frame of one step writes the picture at once, one of several adds up. Where no sample is noisy, that makes no
+ * difference: cosine samples of a white box before a grey sky, which casts no shadow on itself. */
+static void one_step_makes_the_same_picture_as_many(void **state)
+{
+    (void)state;
+    helio_context *context = make_context(2, NULL);
+    float map[MAP_HEIGHT][MAP_WIDTH][3];
+    fill_map(map, 0.75f, 0.5f, 0.25f);
+    for (int variant = 0; variant < 8; variant++) {
+        helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_COSINE,
+                                    .pool_length = 256,
+                                    .spp = 30,
+                                    .aovs = variant & 1,
+                                    .background = variant & 2 ? HELIO_BACKGROUND_NONE : HELIO_BACKGROUND_ENVIRONMENT,
+                                    .no_visibility = true};
+        helio_ground ground = variant & 4 ? HELIO_GROUND_PLANE : HELIO_GROUND_NONE;
+        setup one = make_setup(context, make_box, &white, ground, map, desc);
+        desc.spp = 100;
+        setup many = make_setup(context, make_box, &white, ground, map, desc);
+        helio_frame_info info;
+        helio_picture a = render(&one, 0, &info);
+        assert_int_equal(info.passes, 1);
+        helio_picture b = render(&many, 0, &info);
+        assert_int_equal(info.passes, 4);
+        assert_true(largest_difference(a.rgba, b.rgba, 4 * PIXELS) < 1e-6f);
+        assert_memory_equal(a.object, b.object, PIXELS * sizeof *a.object);
+        if (desc.aovs) {
+            assert_true(largest_difference(a.albedo, b.albedo, 3 * PIXELS) == 0.0f);
+            assert_true(largest_difference(a.normal, b.normal, 3 * PIXELS) == 0.0f);
+            assert_true(largest_difference(a.position, b.position, 3 * PIXELS) == 0.0f);
+            assert_memory_equal(a.depth, b.depth, PIXELS * sizeof *a.depth);
+        }
+        destroy_setup(&one);
+        destroy_setup(&many);
+    }
+    helio_context_destroy(context);
+}
+
+/* The variants of a picture that are made with sums and without: output variables must not change its light. */
+static void output_variables_leave_the_picture_as_it_is(void **state)
+{
+    (void)state;
+    helio_context *context = make_context(2, NULL);
+    float map[MAP_HEIGHT][MAP_WIDTH][3];
+    fill_sunny(map);
+    for (int background = HELIO_BACKGROUND_ENVIRONMENT; background <= HELIO_BACKGROUND_NONE; background++) {
+        helio_renderer_desc desc = {.spp = 64, .background = (helio_background)background};
+        setup plain = make_setup(context, make_sphere, &glossy, HELIO_GROUND_PLANE, map, desc);
+        desc.aovs = true;
+        setup full = make_setup(context, make_sphere, &glossy, HELIO_GROUND_PLANE, map, desc);
+        helio_picture a = render(&plain, 0, NULL), b = render(&full, 0, NULL);
+        assert_memory_equal(a.rgba, b.rgba, PIXELS * 4 * sizeof *a.rgba);
+        assert_memory_equal(a.object, b.object, PIXELS * sizeof *a.object);
+        destroy_setup(&plain);
+        destroy_setup(&full);
+    }
+    helio_context_destroy(context);
+}
+
+/* ---- the background ---- */
+
+/* All around, so that every edge and corner of the cube is seen. Returns the largest difference from the plain way. */
+static float compare_background(const helio_environment *environment, const kernel_set *kernels, helio_camera camera,
+                                float *checksum)
+{
+    enum { SIDE = 96 };
+    camera_frame frame;
+    float largest = 0;
+    assert_ok(camera_frame_create(&camera, 1, &frame));
+    struct background b = background_prepare(environment, kernels, &frame, SIDE, SIDE);
+    for (int row = 0; row < SIDE; row++)
+        for (int first = 0; first < SIDE; first += 13) { /* not a multiple of any register */
+            float x[13], y[13], rgba[13][4];
+            uint32_t count = first + 13 < SIDE ? 13 : (uint32_t)(SIDE - first);
+            for (uint32_t i = 0; i < count; i++) {
+                x[i] = (float)first + (float)i + 0.5f;
+                y[i] = (float)row + 0.5f;
+            }
+            background_fill(&b, count, x, y, rgba);
+            for (uint32_t i = 0; i < count; i++) {
+                float direction[3], expected[3];
+                vec3_to(camera_direction(&frame, x[i] / SIDE, y[i] / SIDE), direction);
+                helio_environment_filtered(environment, direction, expected);
+                largest = fmaxf(largest, largest_difference(rgba[i], expected, 3));
+                assert_true(rgba[i][3] == 1.0f);
+                for (int c = 0; c < 3; c++)
+                    *checksum = *checksum * 0.99f + rgba[i][c];
+            }
+        }
+    return largest;
+}
+
+static void the_background_is_that_of_the_plain_lookup(void **state)
+{
+    (void)state;
+    static const uint32_t sizes[] = {1, 2, 3, 7, 64, 512};
+    static const float views[][3] = {{1, 0.1f, 0}, {-1, 0, 0.2f}, {0.1f, 1, 0}, {0.1f, -1, 0},        {0, 0, 1},
+                                     {0, 0, -1},   {1, 1, 1},     {-1, -1, 1},  {1, 0.001f, -1.001f}, {-1, 1, 0.01f}};
+    float map[MAP_HEIGHT][MAP_WIDTH][3];
+    uint64_t random = 5;
+    for (int i = 0; i < MAP_HEIGHT * MAP_WIDTH * 3; i++)
+        (&map[0][0][0])[i] = (float)random_unit(&random);
+    helio_context *context = make_context(1, NULL);
+    for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++) {
+        helio_environment *environment =
+            make_environment(context, HELIO_LAYOUT_LATLONG, MAP_WIDTH, MAP_HEIGHT, sizes[k], &map[0][0][0], NULL);
+        assert_ok(
+            helio_environment_orient(environment, &(helio_orientation){.rotate = 33, .flip = true, .intensity = 2}));
+        float largest = 0, checksums[ISA_COUNT] = {0};
+        for (int set = 0; set < ISA_COUNT; set++) {
+            if (!isa_is_supported((isa)set))
+                continue;
+            for (size_t v = 0; v < sizeof views / sizeof views[0]; v++) {
+                helio_camera camera = {.up = {0, 1, 0}, .fov = v % 2 ? 100 : 20};
+                memcpy(camera.at, views[v], sizeof camera.at);
+                largest =
+                    fmaxf(largest, compare_background(environment, kernels_of((isa)set), camera, &checksums[set]));
+            }
+            assert_true(checksums[set] == checksums[ISA_SCALAR]); /* the same bits, so the same sum */
+        }
+        print_message("cube of %u texels: background differs by at most %.1e\n", sizes[k], (double)largest);
+        /* A direction is off by a few roundings, each of 6e-8, which moves it by less than 2e-7 of the face's texels;
+         * neighbouring texels differ by up to 2. */
+        assert_true(largest < 1e-6f + 1e-6f * (float)sizes[k]);
+        helio_environment_destroy(environment);
+    }
     helio_context_destroy(context);
 }
 
@@ -695,7 +944,11 @@ int main(void)
         cmocka_unit_test(the_same_seed_gives_the_same_bits_on_any_number_of_threads),
         cmocka_unit_test(update_and_render_take_no_memory),
         cmocka_unit_test(every_frame_is_lit_by_its_own_map),
-        cmocka_unit_test(progress_is_told_and_can_stop_the_frame),
+        cmocka_unit_test(a_stopped_frame_holds_what_it_got),
+        cmocka_unit_test(hits_are_kept_while_the_camera_stays),
+        cmocka_unit_test(one_step_makes_the_same_picture_as_many),
+        cmocka_unit_test(output_variables_leave_the_picture_as_it_is),
+        cmocka_unit_test(the_background_is_that_of_the_plain_lookup),
         cmocka_unit_test(aovs_hold_what_the_camera_meets),
         cmocka_unit_test(bad_descs_are_refused_with_a_sentence),
         cmocka_unit_test(sphere_matches_its_reference),

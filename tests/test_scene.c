@@ -591,7 +591,7 @@ static void write_file(const char *name, const void *bytes, size_t size)
 static helio_mesh *load(const char *path)
 {
     helio_mesh *mesh;
-    assert_ok(helio_mesh_load(context, path, &mesh));
+    assert_ok(helio_mesh_load(context, path, NULL, &mesh));
     return mesh;
 }
 
@@ -604,7 +604,7 @@ static helio_mesh *load_text(const char *name, const char *text)
 static void assert_load_error(const char *name, helio_status expected, const char *words)
 {
     helio_mesh *mesh = (helio_mesh *)&mesh;
-    assert_error(helio_mesh_load(context, path_of(name), &mesh), expected, words);
+    assert_error(helio_mesh_load(context, path_of(name), NULL, &mesh), expected, words);
     assert_non_null(strstr(helio_last_error(), name));
     assert_null(mesh);
 }
@@ -749,8 +749,8 @@ static void unusable_files_say_why(void **state)
     write_file("far.obj", far, strlen(far));
     assert_load_error("far.obj", HELIO_ERR_DATA, "vertex x");
     helio_mesh *mesh;
-    assert_error(helio_mesh_load(context, NULL, &mesh), HELIO_ERR_ARGUMENT, "path");
-    assert_error(helio_mesh_load(context, "x", NULL), HELIO_ERR_ARGUMENT, "place");
+    assert_error(helio_mesh_load(context, NULL, NULL, &mesh), HELIO_ERR_ARGUMENT, "path");
+    assert_error(helio_mesh_load(context, "x", NULL, NULL), HELIO_ERR_ARGUMENT, "place");
 }
 
 /* One triangle with normals along +Z: positions, normals, then indices. */
@@ -953,7 +953,7 @@ static void meshes_cannot_be_loaded_without_assimp(void **state)
 {
     (void)state;
     helio_mesh *mesh;
-    assert_error(helio_mesh_load(context, "mesh.ply", &mesh), HELIO_ERR_UNSUPPORTED, "mesh.ply assimp");
+    assert_error(helio_mesh_load(context, "mesh.ply", NULL, &mesh), HELIO_ERR_UNSUPPORTED, "mesh.ply assimp");
     assert_null(mesh);
 }
 
@@ -1095,6 +1095,24 @@ static void meshes_without_size_get_a_camera(void **state)
             assert_true(at.left >= -0.93 && at.right <= 0.93 && at.bottom >= -0.93 && at.top <= 0.93);
             helio_mesh_destroy(context, meshes[m]);
         }
+    }
+}
+
+/* Lengths whose squares no float can hold. */
+static void tiny_meshes_get_a_camera(void **state)
+{
+    (void)state;
+    static const float sizes[] = {1e-20f, 1e-26f, 1e-36f};
+    for (size_t i = 0; i < COUNT(sizes); i++) {
+        const float corners[3][3] = {{0, 0, 0}, {sizes[i], 0, 0}, {0, 0, sizes[i]}};
+        helio_mesh *mesh = make_mesh(corners[0], 3, triangle_indices, 1);
+        helio_camera camera;
+        assert_ok(helio_camera_parse("auto", mesh, 1.5f, &camera));
+        assert_true(camera.eye[1] > camera.at[1]);
+        camera_frame frame;
+        assert_ok(camera_frame_create(&camera, 1.5f, &frame));
+        assert_near((double)length(frame.forward), 1, 1e-6);
+        helio_mesh_destroy(context, mesh);
     }
 }
 
@@ -1637,6 +1655,7 @@ int main(void)
 #endif
         cmocka_unit_test(orbit_looks_from_where_it_says),
         cmocka_unit_test(meshes_without_size_get_a_camera),
+        cmocka_unit_test(tiny_meshes_get_a_camera),
         cmocka_unit_test(lookat_is_taken_as_given),
         cmocka_unit_test(camera_parse_refuses_everything_else),
         cmocka_unit_test(camera_frame_sees_the_picture_upright),

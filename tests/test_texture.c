@@ -364,6 +364,22 @@ static void png_texels_are_those_of_the_file(void **state)
     free(png);
 }
 
+/* The nearest of 256: 128 of 65535 is nearer to 0, 129 to 1. */
+static void png_of_16_bits_becomes_8(void **state)
+{
+    (void)state;
+    const uint16_t rgba[2][4] = {{0, 128, 129, 65535}, {65535, 65406, 257 * 77 + 128, 65535}};
+    png_image image = {.version = PNG_IMAGE_VERSION, .width = 2, .height = 1, .format = PNG_FORMAT_LINEAR_RGB_ALPHA};
+    unsigned char png[1024];
+    png_alloc_size_t size = sizeof png;
+    assert_true(png_image_write_to_memory(&image, png, &size, 0, rgba, 0, NULL));
+    helio_texture texture = {0};
+    assert_ok(texture_decode(context, "deep.png", png, size, TEXTURE_MAX_BYTES, &texture));
+    const uint8_t expected[8] = {0, 0, 1, 255, 255, 254, 77, 255};
+    assert_memory_equal(texture.rgba, expected, sizeof expected);
+    texture_release(context, &texture);
+}
+
 static void large_pictures_are_refused(void **state)
 {
     (void)state;
@@ -498,7 +514,7 @@ static void write_quarters(const char *name)
 static helio_mesh *load(const char *name)
 {
     helio_mesh *mesh;
-    assert_ok(helio_mesh_load(context, path_of(name), &mesh));
+    assert_ok(helio_mesh_load(context, path_of(name), NULL, &mesh));
     return mesh;
 }
 
@@ -800,7 +816,7 @@ static void no_memory_is_an_error_and_no_leak(void **state)
         memory_count count = {.refuse_after = allowed};
         helio_context *own = make_context(1, &count);
         helio_mesh *mesh;
-        status = helio_mesh_load(own, path_of("a.glb"), &mesh);
+        status = helio_mesh_load(own, path_of("a.glb"), &(helio_mesh_load_desc){.in_process = true}, &mesh);
         if (status == HELIO_OK)
             assert_int_equal(mesh->texture_count, 1);
         else
@@ -852,7 +868,7 @@ static void the_flight_helmet_has_its_textures(void **state)
     find_test_data("meshes/gltf/FlightHelmet/FlightHelmet.gltf", path);
     assert_int_equal(start(state), 0);
     helio_mesh *mesh;
-    assert_ok(helio_mesh_load(context, path, &mesh));
+    assert_ok(helio_mesh_load(context, path, NULL, &mesh));
     assert_int_equal(mesh->texture_count, 10);
     for (uint32_t i = 0; i < mesh->material_count; i++) {
         assert_in_range(mesh->material_textures[i].base_colour, 1, 10);
@@ -880,6 +896,7 @@ int main(void)
 #endif
 #if HELIO_WITH_PNG
         cmocka_unit_test_setup_teardown(png_texels_are_those_of_the_file, start, stop),
+        cmocka_unit_test_setup_teardown(png_of_16_bits_becomes_8, start, stop),
         cmocka_unit_test_setup_teardown(large_pictures_are_refused, start, stop),
 #else
         cmocka_unit_test_setup_teardown(png_textures_need_png, start, stop),

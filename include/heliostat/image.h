@@ -47,7 +47,11 @@ typedef struct helio_image {
 } helio_image;
 
 typedef struct helio_image_read_desc {
-    uint64_t max_pixels; /* larger pictures are refused before memory is taken; default: 2^28 */
+    /* Larger pictures are refused before memory is taken: a guard against small files that claim to be huge. Default:
+     * 2^26 (8192 x 8192), or one for each byte of the file where that is more, up to 2^28. */
+    uint64_t max_pixels;
+
+    bool without_alpha; /* takes no memory for alpha; default: as the file has it */
 } helio_image_read_desc;
 
 /* Reads OpenEXR (scan lines and tiles, all compressions that the library here reads), Radiance HDR, PFM, PNG and JPEG.

@@ -46,18 +46,23 @@ typedef struct helio_renderer_desc {
 typedef struct helio_frame_desc {
     helio_camera camera; /* required */
     uint32_t seed;
-    /* Called now and then on the calling thread with the part done, 0..1. false stops the frame: HELIO_OK is returned
-     * and each pixel holds the samples that it got so far (none: black, alpha 0). Default: none. */
+    /* Called about ten times a second or more often, on the calling thread, with the part done, 0..1. false stops the
+     * frame: HELIO_OK is returned and each pixel holds the samples that it got so far (none: black, alpha 0). Default:
+     * none. */
     bool (*progress)(void *user, float done);
     void *user;
+    bool retrace; /* trace the camera rays even if the previous frame's still hold: to measure them */
 } helio_frame_desc;
 
 typedef struct helio_frame_info {
-    double tables_ms, pools_ms, primary_ms, shade_ms; /* time in each stage, all passes; monotonic clock */
+    double tables_ms, pools_ms, primary_ms, shade_ms; /* time in each stage, all passes; monotonic clock. Threads
+                                                         divide camera rays and shading by tiles: the time of both is
+                                                         shared out in proportion to what threads spent on each. */
     uint32_t passes;                                  /* how often the pools were redrawn */
     uint64_t samples;                                 /* light + BRDF samples taken */
     uint64_t samples_useful;                          /* above the horizon, with light, with a BRDF > 0 */
     uint64_t rays;                                    /* shadow rays */
+    uint64_t camera_rays;                             /* traced; 0 where those of the previous frame still hold */
     uint64_t points;                                  /* shading points: camera samples that hit something */
     bool stopped;                                     /* progress said so */
 } helio_frame_info;
@@ -68,7 +73,8 @@ HELIO_API helio_status helio_renderer_create(helio_context *context, const helio
 HELIO_API void helio_renderer_destroy(helio_renderer *renderer);
 
 /* Renders the environment's current frame: tables, then for each pass pools, camera rays and shading. The same seed
- * gives the same bits on any number of threads. info may be NULL. */
+ * gives the same bits on any number of threads. With one camera sample per pixel, what its rays met is kept for the
+ * next frames until the camera changes. info may be NULL. */
 HELIO_API helio_status helio_renderer_render(helio_renderer *renderer, const helio_frame_desc *desc,
                                              helio_frame_info *info);
 

@@ -98,15 +98,31 @@ typedef struct helio_mesh_desc {
 /* Copies and checks arrays, texels included. HELIO_ERR_DATA, with the offending index, if they do not fit together. */
 HELIO_API helio_status helio_mesh_create(helio_context *context, const helio_mesh_desc *desc, helio_mesh **mesh);
 
+/* What reading a mesh may cost: guards against files that are damaged, or made to do harm. */
+typedef struct helio_mesh_load_desc {
+    uint64_t max_memory;  /* bytes that the importer may take; default: 1.5 GiB, and 16 for each byte of the file */
+    uint32_t max_seconds; /* of processor time for the file itself; 8 times that with its textures, and 16 times by the
+                             clock; default: 8, and one for each MiB of the file */
+    uint64_t max_pixels;  /* of each texture; larger ones are left out; default: 2^26 */
+
+    /* Runs the importer in the calling process, where it can crash it, and without the first two limits: for files that
+     * you trust, where no other process can be made. */
+    bool in_process;
+} helio_mesh_load_desc;
+
 /* Reads whatever assimp reads (PLY, OBJ, glTF/GLB, ...), also gzipped (.ply.gz). Node transforms are applied, polygons
- * become triangles, points and lines are dropped.
+ * become triangles, points and lines are dropped. desc may be NULL.
  *
  * Materials come with the base colour and metallic-roughness textures of glTF and with the diffuse ones (map_Kd) of
  * others, PNG or JPEG, from inside the file or from files named relative to its folder. As in other programs such a
  * name may lead out of the folder by "..". An absolute one is a place on somebody else's disk: only its last part is
  * looked for, beside the mesh. A texture that cannot be read is a warning in the log, and the material's own colour is
- * used. */
-HELIO_API helio_status helio_mesh_load(helio_context *context, const char *path, helio_mesh **mesh);
+ * used.
+ *
+ * assimp runs in a child process, made by fork() and gone when this function returns, so that a file that crashes it
+ * or never ends becomes a failure. All that comes back is checked. docs/safety.md tells what a host should know. */
+HELIO_API helio_status helio_mesh_load(helio_context *context, const char *path, const helio_mesh_load_desc *desc,
+                                       helio_mesh **mesh);
 HELIO_API void helio_mesh_destroy(helio_context *context, helio_mesh *mesh);
 
 /* ---- scene: a mesh made ready for rays, and the ground ------------------------------ */

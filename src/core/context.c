@@ -9,9 +9,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
-enum { MAX_THREADS = 1024 };
+enum { MAX_THREADS = 1024, HUGE_PAGE = 1 << 21 };
 
 struct helio_context {
     helio_context_desc desc; /* with defaults resolved */
@@ -21,9 +22,21 @@ struct helio_context {
     bool has_pool;
 };
 
+/* Samples reach into large arrays at random: with small pages each would also miss the table of pages. */
+static void *allocate_huge(size_t bytes)
+{
+    size_t rounded = (bytes + HUGE_PAGE - 1) / HUGE_PAGE * HUGE_PAGE;
+    void *memory = aligned_alloc(HUGE_PAGE, rounded);
+    if (memory != NULL)
+        madvise(memory, rounded, MADV_HUGEPAGE); /* a wish: without it all is as right, but slower */
+    return memory;
+}
+
 static void *default_allocate(void *user, size_t bytes, size_t alignment)
 {
     (void)user;
+    if (bytes >= 2 * HUGE_PAGE && alignment <= HUGE_PAGE)
+        return allocate_huge(bytes);
     return aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
 }
 

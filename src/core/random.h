@@ -37,37 +37,48 @@ static inline uint32_t reverse_bits(uint32_t x)
     return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
 }
 
-/* Coordinate `dimension` (0, 1 or 2) of point `index` of Sobol's sequence, as a fraction of 2^32. The first two
- * dimensions are a (0,2)-sequence: every aligned block of 2^k points has one point in each elementary interval. */
-static inline uint32_t sobol(uint32_t index, uint32_t dimension)
+/* The bits of the second coordinate of Sobol's sequence from the lowest up: Pascal's triangle modulo 2, which is a
+ * product of five sparse matrices. */
+static inline uint32_t pascal_transform(uint32_t x)
 {
-    if (dimension == 0)
-        return reverse_bits(index);
-    uint32_t result = 0;
-    if (dimension == 1) {
-        for (uint32_t v = 0x80000000u; index != 0; index >>= 1, v ^= v >> 1)
-            if (index & 1u)
-                result ^= v;
-        return result;
-    }
-    /* Direction numbers of the primitive polynomial x^2 + x + 1 with m = 1, 3. */
-    uint32_t v = 0x80000000u, next = 0xc0000000u;
+    x ^= (x & 0xaaaaaaaau) >> 1;
+    x ^= (x & 0xccccccccu) >> 2;
+    x ^= (x & 0xf0f0f0f0u) >> 4;
+    x ^= (x & 0xff00ff00u) >> 8;
+    return x ^ (x >> 16);
+}
+
+/* Direction numbers of the third dimension (primitive polynomial x^2 + x + 1 with m = 1, 3), lowest bit first. */
+static inline uint32_t third_dimension(uint32_t index)
+{
+    uint32_t result = 0, v = 1u, next = 3u;
     for (; index != 0; index >>= 1) {
-        if (index & 1u)
-            result ^= v;
-        uint32_t after = next ^ v ^ (v >> 2);
+        result ^= index & 1u ? v : 0u;
+        uint32_t after = next ^ v ^ (v << 2);
         v = next;
         next = after;
     }
     return result;
 }
 
+/* sobol() with its bits reversed, which is how scrambling wants it. */
+static inline uint32_t sobol_reversed(uint32_t index, uint32_t dimension)
+{
+    return dimension == 0 ? index : dimension == 1 ? pascal_transform(index) : third_dimension(index);
+}
+
+/* Coordinate `dimension` (0, 1 or 2) of point `index` of Sobol's sequence, as a fraction of 2^32. The first two
+ * dimensions are a (0,2)-sequence: every aligned block of 2^k points has one point in each elementary interval. */
+static inline uint32_t sobol(uint32_t index, uint32_t dimension)
+{
+    return reverse_bits(sobol_reversed(index, dimension));
+}
+
 /* Owen's nested uniform scrambling of a fraction of 2^32, by hash: each bit is flipped by a hash of the bits above it,
  * so that nets stay nets and each point becomes uniform (Laine and Karras 2011, Burley 2020; constants by N. Vegdahl
- * 2021). */
-static inline uint32_t owen_scramble(uint32_t x, uint32_t seed)
+ * 2021). Takes the fraction with its bits reversed. */
+static inline uint32_t owen_scramble_reversed(uint32_t x, uint32_t seed)
 {
-    x = reverse_bits(x);
     x ^= x * 0x3d20adeau;
     x += seed;
     x *= (seed >> 16) | 1u;
@@ -76,10 +87,16 @@ static inline uint32_t owen_scramble(uint32_t x, uint32_t seed)
     return reverse_bits(x);
 }
 
+/* The seed that scrambles one coordinate of the sequence that belongs to seed. */
+static inline uint32_t dimension_seed(uint32_t seed, uint32_t dimension)
+{
+    return hash_combine(seed, dimension);
+}
+
 /* One coordinate of the Owen-scrambled sequence that belongs to seed. */
 static inline uint32_t scrambled_sobol(uint32_t index, uint32_t dimension, uint32_t seed)
 {
-    return owen_scramble(sobol(index, dimension), hash_combine(seed, dimension));
+    return owen_scramble_reversed(sobol_reversed(index, dimension), dimension_seed(seed, dimension));
 }
 
 #endif

@@ -3,25 +3,28 @@
 
 #include "core/context.h"
 
-#include <string.h>
-
-helio_status film_create(helio_context *context, uint32_t width, uint32_t height, bool shows_background, bool surfaces,
-                         struct film *film)
+static bool create_surfaces(helio_context *context, size_t count, bool has_steps, struct film *film)
 {
-    size_t count = (size_t)width * height;
-    *film = (struct film){.width = width, .height = height, .shows_background = shows_background};
-    film->pixels = context_allocate(context, count, sizeof *film->pixels);
+    film->albedo = context_allocate(context, count, 3 * sizeof(float));
+    film->normal = context_allocate(context, count, 3 * sizeof(float));
+    film->position = context_allocate(context, count, 3 * sizeof(float));
+    film->depth = context_allocate(context, count, sizeof(float));
+    if (has_steps)
+        film->surfaces = context_allocate(context, count, sizeof *film->surfaces);
+    return film->albedo && film->normal && film->position && film->depth && (film->surfaces || !has_steps);
+}
+
+helio_status film_create(helio_context *context, const film_desc *desc, struct film *film)
+{
+    size_t count = (size_t)desc->width * desc->height;
+    *film = (struct film){.width = desc->width, .height = desc->height, .shows_background = desc->shows_background};
     film->rgba = context_allocate(context, count, 4 * sizeof(float));
     film->object = context_allocate(context, count, sizeof(float));
-    bool complete = film->pixels && film->rgba && film->object;
-    if (surfaces) {
-        film->surfaces = context_allocate(context, count, sizeof *film->surfaces);
-        film->albedo = context_allocate(context, count, 3 * sizeof(float));
-        film->normal = context_allocate(context, count, 3 * sizeof(float));
-        film->position = context_allocate(context, count, 3 * sizeof(float));
-        film->depth = context_allocate(context, count, sizeof(float));
-        complete = complete && film->surfaces && film->albedo && film->normal && film->position && film->depth;
-    }
+    if (desc->has_steps)
+        film->lights = context_allocate(context, count, sizeof *film->lights);
+    bool complete = film->rgba && film->object && (film->lights || !desc->has_steps);
+    if (complete && desc->has_surfaces)
+        complete = create_surfaces(context, count, desc->has_steps, film);
     if (complete)
         return HELIO_OK;
     film_destroy(context, film);
@@ -30,7 +33,7 @@ helio_status film_create(helio_context *context, uint32_t width, uint32_t height
 
 void film_destroy(helio_context *context, struct film *film)
 {
-    context_release(context, film->pixels);
+    context_release(context, film->lights);
     context_release(context, film->surfaces);
     context_release(context, film->rgba);
     context_release(context, film->object);
@@ -41,56 +44,39 @@ void film_destroy(helio_context *context, struct film *film)
     *film = (struct film){0};
 }
 
-void film_clear(struct film *film)
+static void develop_light(const film_light *light, bool shows_background, double weight, float rgba[4], float *object)
 {
-    size_t count = (size_t)film->width * film->height;
-    memset(film->pixels, 0, count * sizeof *film->pixels);
-    if (film->surfaces)
-        memset(film->surfaces, 0, count * sizeof *film->surfaces);
-}
-
-static void develop_pixel(const film_pixel *pixel, bool shows_background, float rgba[4], float *object)
-{
-    double scale = pixel->weight > 0 ? 1.0 / pixel->weight : 0.0;
-    double lit = pixel->unoccluded > 0 ? pixel->reaching / pixel->unoccluded : 1.0;
-    double alpha = pixel->covered + pixel->catcher * (1.0 - lit);
+    double scale = weight > 0 ? 1.0 / weight : 0.0;
+    double lit = light->unoccluded > 0 ? light->reaching / light->unoccluded : 1.0;
+    double alpha = light->covered + light->catcher * (1.0 - lit);
     for (int c = 0; c < 3; c++) {
-        double behind = shows_background ? pixel->catcher_background[c] * lit : 0.0;
-        rgba[c] = (float)((pixel->rgb[c] + behind) * scale);
+        double behind = shows_background ? light->catcher_background[c] * lit : 0.0;
+        rgba[c] = (float)((light->rgb[c] + behind) * scale);
     }
-    rgba[3] = shows_background ? (float)(pixel->weight > 0) : (float)(alpha * scale);
-    *object = (float)(pixel->object * scale);
+    rgba[3] = shows_background ? (float)(weight > 0) : (float)(alpha * scale);
+    *object = (float)(light->object * scale);
 }
 
-static void develop_surface(const struct film *film, size_t i)
+static void develop_surface(const struct film *film, size_t index, const film_surface *surface)
 {
-    const film_surface *surface = &film->surfaces[i];
     double scale = surface->count > 0 ? 1.0 / surface->count : 0.0;
     double norm = 0;
     for (int c = 0; c < 3; c++)
         norm += surface->normal[c] * surface->normal[c];
     double normal_scale = norm > 0 ? 1.0 / sqrt(norm) : 0.0;
     for (int c = 0; c < 3; c++) {
-        film->albedo[i * 3 + (size_t)c] = (float)(surface->albedo[c] * scale);
-        film->normal[i * 3 + (size_t)c] = (float)(surface->normal[c] * normal_scale);
-        film->position[i * 3 + (size_t)c] = (float)(surface->position[c] * scale);
+        film->albedo[index * 3 + (size_t)c] = (float)(surface->albedo[c] * scale);
+        film->normal[index * 3 + (size_t)c] = (float)(surface->normal[c] * normal_scale);
+        film->position[index * 3 + (size_t)c] = (float)(surface->position[c] * scale);
     }
-    film->depth[i] = surface->count > 0 ? (float)(surface->depth * scale) : INFINITY;
+    film->depth[index] = surface->count > 0 ? (float)(surface->depth * scale) : INFINITY;
 }
 
-static void develop_row(void *data, size_t row)
+void film_develop(const struct film *film, size_t index, const film_pixel *pixel, double weight)
 {
-    struct film *film = data;
-    for (size_t i = row * film->width; i < (row + 1) * film->width; i++) {
-        develop_pixel(&film->pixels[i], film->shows_background, film->rgba + i * 4, &film->object[i]);
-        if (film->surfaces)
-            develop_surface(film, i);
-    }
-}
-
-void film_develop(helio_context *context, struct film *film)
-{
-    context_parallel_for(context, film->height, develop_row, film);
+    develop_light(&pixel->light, film->shows_background, weight, film->rgba + index * 4, &film->object[index]);
+    if (film->albedo)
+        develop_surface(film, index, &pixel->surface);
 }
 
 helio_picture film_picture(const struct film *film)

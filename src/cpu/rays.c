@@ -124,6 +124,8 @@ void rays_destroy(rays *r)
     context_release(r->context, r);
 }
 
+/* ---- one ray: the plain way, and the definition of the others --------------------------- */
+
 static struct RTCRay make_ray(vec3 origin, vec3 direction)
 {
     return (struct RTCRay){
@@ -177,4 +179,105 @@ bool rays_occluded(const rays *r, vec3 origin, vec3 direction)
     struct RTCRay ray = make_ray(origin, direction);
     trace_any(r->scene, &ray);
     return ray.tfar < 0.0f; /* Embree's way to say that something was hit */
+}
+
+/* ---- many rays from one origin: in packets ---------------------------------------------- */
+
+enum { PACKET = 8 };
+
+/* Idle lanes repeat the first ray, so that there is nothing odd in them. */
+static void fill_packet(vec3 origin, uint32_t count, const float *x, const float *y, const float *z, int valid[PACKET],
+                        struct RTCRay8 *packet)
+{
+    for (uint32_t lane = 0; lane < PACKET; lane++) {
+        uint32_t i = lane < count ? lane : 0;
+        valid[lane] = lane < count ? -1 : 0;
+        packet->org_x[lane] = origin.x;
+        packet->org_y[lane] = origin.y;
+        packet->org_z[lane] = origin.z;
+        packet->tnear[lane] = 0.0f;
+        packet->dir_x[lane] = x[i];
+        packet->dir_y[lane] = y[i];
+        packet->dir_z[lane] = z[i];
+        packet->time[lane] = 0.0f;
+        packet->tfar[lane] = INFINITY;
+        packet->mask[lane] = ~0u;
+        packet->id[lane] = 0;
+        packet->flags[lane] = 0;
+    }
+}
+
+static void trace_nearest_packet(RTCScene scene, const int *valid, struct RTCRayHit8 *packet)
+{
+#if HELIO_EMBREE_MAJOR >= 4
+    struct RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect8(valid, scene, packet, &arguments);
+#else
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect8(valid, scene, &context, packet);
+#endif
+}
+
+static void trace_any_packet(RTCScene scene, const int *valid, struct RTCRay8 *packet)
+{
+#if HELIO_EMBREE_MAJOR >= 4
+    rtcOccluded8(valid, scene, packet, NULL);
+#else
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded8(valid, scene, &context, packet);
+#endif
+}
+
+static void intersect_packet(const rays *r, vec3 origin, uint32_t count, const float *x, const float *y, const float *z,
+                             rays_hit *hits)
+{
+    _Alignas(32) int valid[PACKET];
+    struct RTCRayHit8 packet;
+    fill_packet(origin, count, x, y, z, valid, &packet.ray);
+    for (uint32_t lane = 0; lane < PACKET; lane++)
+        packet.hit.geomID[lane] = packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+    trace_nearest_packet(r->scene, valid, &packet);
+    for (uint32_t lane = 0; lane < count; lane++) {
+        bool met = packet.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID;
+        hits[lane] = (rays_hit){.triangle = met ? packet.hit.primID[lane] : RAYS_NOTHING,
+                                .u = packet.hit.u[lane],
+                                .v = packet.hit.v[lane],
+                                .distance = packet.ray.tfar[lane]};
+    }
+}
+
+static void occlude_packet(const rays *r, vec3 origin, uint32_t count, const float *x, const float *y, const float *z,
+                           bool *occluded)
+{
+    _Alignas(32) int valid[PACKET];
+    struct RTCRay8 packet;
+    fill_packet(origin, count, x, y, z, valid, &packet);
+    trace_any_packet(r->scene, valid, &packet);
+    for (uint32_t lane = 0; lane < count; lane++)
+        occluded[lane] = packet.tfar[lane] < 0.0f;
+}
+
+void rays_intersect_many(const rays *r, vec3 origin, uint32_t count, const float *x, const float *y, const float *z,
+                         rays_hit *hits)
+{
+    uint32_t i = 0;
+    for (; count - i > 1; i += count - i < PACKET ? count - i : PACKET)
+        intersect_packet(r, origin, count - i < PACKET ? count - i : PACKET, x + i, y + i, z + i, hits + i);
+    if (i < count && !rays_intersect(r, origin, (vec3){x[i], y[i], z[i]}, &hits[i]))
+        hits[i].triangle = RAYS_NOTHING;
+}
+
+void rays_occluded_many(const rays *r, vec3 origin, uint32_t count, const float *x, const float *y, const float *z,
+                        bool *occluded)
+{
+    uint32_t i = 0;
+    for (; count - i > 1; i += count - i < PACKET ? count - i : PACKET)
+        occlude_packet(r, origin, count - i < PACKET ? count - i : PACKET, x + i, y + i, z + i, occluded + i);
+    if (i < count)
+        occluded[i] = rays_occluded(r, origin, (vec3){x[i], y[i], z[i]});
 }

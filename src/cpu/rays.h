@@ -10,6 +10,8 @@
 
 typedef struct rays rays;
 
+#define RAYS_NOTHING UINT32_MAX /* instead of a triangle */
+
 typedef struct rays_hit {
     uint32_t triangle;
     float u, v;     /* position = (1 - u - v) corner 0 + u corner 1 + v corner 2 */
@@ -25,6 +27,13 @@ void rays_destroy(rays *r);
 /* The nearest hit, from either side; triangles without area are never hit. */
 bool rays_intersect(const rays *r, vec3 origin, vec3 direction, rays_hit *hit);
 bool rays_occluded(const rays *r, vec3 origin, vec3 direction);
+
+/* The same for many rays from one origin, faster than one by one; directions in three arrays [count]. hits: [count],
+ * with the triangle RAYS_NOTHING where there is none; occluded: [count]. */
+void rays_intersect_many(const rays *r, vec3 origin, uint32_t count, const float *x, const float *y, const float *z,
+                         rays_hit *hits);
+void rays_occluded_many(const rays *r, vec3 origin, uint32_t count, const float *x, const float *y, const float *z,
+                        bool *occluded);
 
 #else
 
@@ -52,12 +61,28 @@ static inline bool rays_intersect(const rays *r, vec3 origin, vec3 direction, ra
     return false;
 }
 
-static inline bool rays_occluded(const rays *r, vec3 origin, vec3 direction)
+static inline void rays_intersect_many(const rays *r, vec3 origin, uint32_t count, const float *x, const float *y,
+                                       const float *z, rays_hit *hits)
 {
     (void)r;
     (void)origin;
-    (void)direction;
-    return false;
+    (void)x;
+    (void)y;
+    (void)z;
+    for (uint32_t i = 0; i < count; i++)
+        hits[i].triangle = RAYS_NOTHING;
+}
+
+static inline void rays_occluded_many(const rays *r, vec3 origin, uint32_t count, const float *x, const float *y,
+                                      const float *z, bool *occluded)
+{
+    (void)r;
+    (void)origin;
+    (void)x;
+    (void)y;
+    (void)z;
+    for (uint32_t i = 0; i < count; i++)
+        occluded[i] = false;
 }
 
 #endif

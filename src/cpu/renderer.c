@@ -10,9 +10,50 @@
 #include "sampling/estimate.h"
 #include "sampling/strategy.h"
 
-#include <time.h>
+enum { MAX_SIZE = 16384, MAX_SPP = 1 << 20, MAX_AA = 4096 };
 
-enum { MAX_SIZE = 16384, MAX_SPP = 1 << 20, MAX_AA = 4096, BATCH_TILES = 64 };
+/* How often the caller hears of progress, roughly. */
+static const double SLICE_MS = 75.0;
+
+/* ---- the plan of a frame ---- */
+
+/* Light samples of a camera sample come in this many parts, each from new pools. */
+static uint32_t parts_per_camera_sample(const helio_renderer *renderer)
+{
+    uint32_t limit = helio_pools_sample_limit(renderer->pools);
+    return (renderer->desc.spp + limit - 1) / limit;
+}
+
+/* Where one part is enough, several camera samples share a pass, so that all together take what one point may take. */
+static uint32_t camera_samples_per_pass(const helio_renderer *renderer)
+{
+    uint32_t fitting = helio_pools_sample_limit(renderer->pools) / renderer->desc.spp;
+    return fitting > 1 ? fitting : 1;
+}
+
+static uint32_t step_count(const helio_renderer *renderer)
+{
+    return renderer->desc.aa * parts_per_camera_sample(renderer);
+}
+
+static frame_step plan_step(const helio_renderer *renderer, uint32_t index)
+{
+    uint32_t parts = parts_per_camera_sample(renderer), spp = renderer->desc.spp;
+    uint32_t part = index % parts;
+    return (frame_step){
+        .pass = parts > 1 ? index : index / camera_samples_per_pass(renderer),
+        .camera_sample = index / parts,
+        .part = part,
+        .samples = (uint32_t)((uint64_t)spp * (part + 1) / parts - (uint64_t)spp * part / parts),
+        .is_first = index == 0,
+        .is_last = index + 1 == step_count(renderer),
+    };
+}
+
+uint32_t helio_renderer_passes(const helio_renderer *renderer)
+{
+    return plan_step(renderer, step_count(renderer) - 1).pass + 1;
+}
 
 /* ---- creation ---- */
 
@@ -52,10 +93,15 @@ static helio_status create_parts(helio_renderer *renderer)
     const helio_pools_desc pools = {.strategy = desc->strategy, .length = desc->pool_length};
     HELIO_TRY(helio_tables_create(desc->environment, desc->weighting, &renderer->tables));
     HELIO_TRY(helio_pools_create(renderer->tables, &pools, &renderer->pools));
-    HELIO_TRY(film_create(renderer->context, desc->width, desc->height,
-                          desc->background == HELIO_BACKGROUND_ENVIRONMENT, desc->aovs, &renderer->film));
-    renderer->hits = context_allocate(renderer->context, (size_t)desc->width * desc->height, sizeof *renderer->hits);
-    return renderer->hits ? HELIO_OK : HELIO_ERR_MEMORY;
+    const film_desc film = {
+        .width = desc->width,
+        .height = desc->height,
+        .shows_background = desc->background == HELIO_BACKGROUND_ENVIRONMENT,
+        .has_surfaces = desc->aovs,
+        .has_steps = step_count(renderer) > 1,
+    };
+    HELIO_TRY(film_create(renderer->context, &film, &renderer->film));
+    return hits_create(renderer->context, desc->scene, desc->width, desc->height, &renderer->hits);
 }
 
 helio_status helio_renderer_create(helio_context *context, const helio_renderer_desc *given, helio_renderer **out)
@@ -85,141 +131,103 @@ void helio_renderer_destroy(helio_renderer *renderer)
     if (renderer == NULL)
         return;
     helio_context *context = renderer->context;
-    context_release(context, renderer->hits);
+    hits_destroy(context, &renderer->hits);
     film_destroy(context, &renderer->film);
     helio_pools_destroy(renderer->pools);
     helio_tables_destroy(renderer->tables);
     context_release(context, renderer);
 }
 
-/* ---- the plan of a frame ---- */
-
-/* Light samples of a camera sample come in this many parts, each from new pools. */
-static uint32_t parts_per_camera_sample(const helio_renderer *renderer)
-{
-    uint32_t limit = helio_pools_sample_limit(renderer->pools);
-    return (renderer->desc.spp + limit - 1) / limit;
-}
-
-/* Where one part is enough, several camera samples share a pass, so that all together take what one point may take. */
-static uint32_t camera_samples_per_pass(const helio_renderer *renderer)
-{
-    uint32_t fitting = helio_pools_sample_limit(renderer->pools) / renderer->desc.spp;
-    return fitting > 1 ? fitting : 1;
-}
-
-static uint32_t step_count(const helio_renderer *renderer)
-{
-    return renderer->desc.aa * parts_per_camera_sample(renderer);
-}
-
-static frame_step plan_step(const helio_renderer *renderer, uint32_t index)
-{
-    uint32_t parts = parts_per_camera_sample(renderer), spp = renderer->desc.spp;
-    uint32_t part = index % parts;
-    return (frame_step){
-        .pass = parts > 1 ? index : index / camera_samples_per_pass(renderer),
-        .camera_sample = index / parts,
-        .part = part,
-        .samples = (uint32_t)((uint64_t)spp * (part + 1) / parts - (uint64_t)spp * part / parts),
-    };
-}
-
-uint32_t helio_renderer_passes(const helio_renderer *renderer)
-{
-    return plan_step(renderer, step_count(renderer) - 1).pass + 1;
-}
-
 /* ---- a frame ---- */
 
-static double milliseconds(void)
+/* Tells whether to go on. */
+static bool run_step(struct frame *frame, const helio_frame_desc *desc, helio_frame_info *info, float done, float part)
 {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+    double slice_ms = desc->progress != NULL ? SLICE_MS : HUGE_VAL;
+    size_t tiles_done;
+    frame->next_tile = 0;
+    do {
+        tiles_done = frame_work(frame, slice_ms, info);
+        float fraction = (float)tiles_done / (float)frame->tile_count;
+        info->stopped = desc->progress != NULL && !desc->progress(desc->user, done + part * fraction);
+    } while (!info->stopped && tiles_done < frame->tile_count);
+    if (info->stopped)
+        frame_finish(frame, tiles_done);
+    return tiles_done == frame->tile_count;
 }
 
-static size_t tile_count(const struct frame *frame)
+/* Sets the frame up for the step. The hits of the only camera sample are kept from frame to frame; others make way for
+ * those of the next. */
+static helio_status begin_step(helio_renderer *renderer, struct frame *frame, uint32_t index, bool keeps_hits)
 {
-    const struct film *film = &frame->renderer->film;
-    return (size_t)frame->tiles_across * ((film->height + TILE - 1) / TILE);
-}
-
-static void run_batch(struct frame *frame, size_t tiles, helio_frame_info *info)
-{
-    helio_context *context = frame->renderer->context;
-    double start = milliseconds();
-    if (frame->step.part == 0)
-        context_parallel_for(context, tiles, primary_tile, frame);
-    double traced = milliseconds();
-    context_parallel_for(context, tiles, shade_tile, frame);
-    info->primary_ms += traced - start;
-    info->shade_ms += milliseconds() - traced;
-}
-
-/* Batches of tiles, so that the caller hears of progress and can stop. */
-static bool run_step(struct frame *frame, const helio_frame_desc *desc, float done, float part, helio_frame_info *info)
-{
-    size_t tiles = tile_count(frame);
-    size_t batch = (size_t)BATCH_TILES * helio_context_threads(frame->renderer->context);
-    for (size_t first = 0; first < tiles; first += batch) {
-        frame->first_tile = first;
-        run_batch(frame, tiles - first < batch ? tiles - first : batch, info);
-        float fraction = (float)(first + batch < tiles ? first + batch : tiles) / (float)tiles;
-        if (desc->progress != NULL && !desc->progress(desc->user, done + part * fraction))
-            return false;
-    }
-    return true;
+    frame->step = plan_step(renderer, index);
+    frame->weight += frame->step.samples;
+    frame->step_seed = hash_combine(hash_combine(frame->seed, frame->step.camera_sample), frame->step.part);
+    frame->traces = frame->step.part == 0 && !keeps_hits;
+    frame->settings.samples = frame->step.samples;
+    return estimate_resolve(renderer->pools, &frame->settings, &frame->estimate);
 }
 
 static helio_status run_steps(helio_renderer *renderer, struct frame *frame, const helio_frame_desc *desc,
                               helio_frame_info *info)
 {
     uint32_t steps = step_count(renderer);
+    bool keeps_hits = !desc->retrace && hits_belong_to(&renderer->hits, &frame->camera);
     for (uint32_t index = 0; index < steps && !info->stopped; index++) {
-        frame->step = plan_step(renderer, index);
-        if (frame->step.pass == info->passes) {
-            double start = milliseconds();
-            HELIO_TRY(helio_pools_draw(renderer->pools, desc->seed, frame->step.pass));
-            info->pools_ms += milliseconds() - start;
+        if (plan_step(renderer, index).pass == info->passes) {
+            double start = frame_milliseconds();
+            HELIO_TRY(helio_pools_draw(renderer->pools, desc->seed, info->passes));
+            info->pools_ms += frame_milliseconds() - start;
             info->passes++;
         }
-        frame->settings.samples = frame->step.samples;
-        HELIO_TRY(estimate_resolve(renderer->pools, &frame->settings, &frame->estimate));
-        info->stopped = !run_step(frame, desc, (float)index / (float)steps, 1.0f / (float)steps, info);
+        HELIO_TRY(begin_step(renderer, frame, index, keeps_hits));
+        if (frame->traces)
+            renderer->hits.complete = false;
+        bool is_done = run_step(frame, desc, info, (float)index / (float)steps, 1.0f / (float)steps);
+        if (frame->traces && is_done && renderer->desc.aa == 1) {
+            renderer->hits.camera = frame->camera;
+            renderer->hits.complete = true;
+        }
     }
     return HELIO_OK;
+}
+
+static struct frame begin_frame(const helio_renderer *renderer, const camera_frame *camera, uint32_t seed)
+{
+    const helio_renderer_desc *desc = &renderer->desc;
+    size_t tiles_across = (desc->width + TILE - 1) / TILE;
+    return (struct frame){
+        .renderer = renderer,
+        .camera = *camera,
+        .background = background_prepare(desc->environment, kernels_of(context_isa(renderer->context)), camera,
+                                         desc->width, desc->height),
+        .seed = hash(seed),
+        .tiles_across = tiles_across,
+        .tile_count = tiles_across * ((desc->height + TILE - 1) / TILE),
+        .settings = {.brdf_share = desc->brdf_share,
+                     .no_beta = desc->no_beta,
+                     .visibility = shade_visibility(renderer),
+                     .user = (void *)(uintptr_t)desc->scene},
+    };
 }
 
 helio_status helio_renderer_render(helio_renderer *renderer, const helio_frame_desc *desc, helio_frame_info *out)
 {
     if (renderer == NULL || desc == NULL)
         return fail(HELIO_ERR_ARGUMENT, "helio_renderer_render needs a renderer and a desc");
-    const helio_renderer_desc *settings = &renderer->desc;
     helio_frame_info info = {0};
     camera_frame camera;
-    HELIO_TRY(camera_frame_create(&desc->camera, (float)settings->width / (float)settings->height, &camera));
-    double start = milliseconds();
+    HELIO_TRY(camera_frame_create(&desc->camera, (float)renderer->desc.width / (float)renderer->desc.height, &camera));
+    double start = frame_milliseconds();
     HELIO_TRY(helio_tables_update(renderer->tables));
-    info.tables_ms = milliseconds() - start;
-
-    struct frame frame = {
-        .renderer = renderer,
-        .camera = camera,
-        .seed = hash(desc->seed),
-        .tiles_across = (settings->width + TILE - 1) / TILE,
-        .settings = {.brdf_share = settings->brdf_share,
-                     .no_beta = settings->no_beta,
-                     .visibility = shade_visibility(renderer),
-                     .user = (void *)(uintptr_t)settings->scene},
-    };
-    film_clear(&renderer->film);
+    info.tables_ms = frame_milliseconds() - start;
+    struct frame frame = begin_frame(renderer, &camera, desc->seed);
     HELIO_TRY(run_steps(renderer, &frame, desc, &info));
-    film_develop(renderer->context, &renderer->film);
     info.samples = frame.samples;
     info.samples_useful = frame.useful;
     info.rays = frame.rays;
     info.points = frame.points;
+    info.camera_rays = frame.camera_rays;
     if (out != NULL)
         *out = info;
     return HELIO_OK;

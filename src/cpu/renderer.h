@@ -3,9 +3,9 @@
 #ifndef HELIOSTAT_SRC_RENDERER_H
 #define HELIOSTAT_SRC_RENDERER_H
 
-#include "core/vector.h"
+#include "cpu/background.h"
 #include "cpu/film.h"
-#include "scene/camera.h"
+#include "cpu/hits.h"
 #include "scene/scene.h"
 
 #include <heliostat/renderer.h>
@@ -13,22 +13,8 @@
 #include <stdatomic.h>
 
 enum { TILE = 16 }; /* pixels along the edge of a tile: the piece of work of one thread */
-
-typedef enum primary_kind {
-    PRIMARY_MISS = 0,
-    PRIMARY_OBJECT,
-    PRIMARY_PLANE,
-    PRIMARY_CATCHER,
-} primary_kind;
-
-/* What a camera ray met. */
-typedef struct primary_hit {
-    primary_kind kind;
-    vec3 direction; /* of the ray, away from the eye */
-    vec3 position, normal, geometric_normal;
-    helio_material material;
-    float depth;
-} primary_hit;
+_Static_assert((int)TILE <= (int)BACKGROUND_PIXELS && (int)TILE <= (int)SCENE_RAYS,
+               "a row of a tile is handled at once");
 
 struct helio_renderer {
     helio_context *context;
@@ -36,7 +22,7 @@ struct helio_renderer {
     helio_tables *tables;
     helio_pools *pools;
     struct film film;
-    primary_hit *hits; /* [height][width], of the current camera sample */
+    struct hits hits; /* of the current camera sample */
 };
 
 /* One camera sample with all or a part of its light samples. Light samples beyond what the pools give to a point at
@@ -46,19 +32,32 @@ typedef struct frame_step {
     uint32_t camera_sample; /* 0 ... aa - 1 */
     uint32_t part;          /* of the camera sample */
     uint32_t samples;       /* per point */
+    bool is_first, is_last; /* of the frame */
 } frame_step;
+
+/* What threads count, each for itself. */
+typedef struct frame_counts {
+    uint64_t samples, useful, rays, points, camera_rays;
+    double primary_ms, shade_ms;
+} frame_counts;
 
 /* A frame while it is rendered; shared by all threads. */
 struct frame {
     const helio_renderer *renderer;
     camera_frame camera;
+    struct background background;
     uint32_t seed;
     frame_step step;
+    double weight;                /* of the light samples that a pixel has after this step */
+    uint32_t step_seed;           /* of all points of the step */
+    bool traces;                  /* the step begins with camera rays */
     helio_estimate_desc settings; /* of every estimate, before defaults */
     helio_estimate_desc estimate; /* of the step in progress, resolved */
-    uint32_t tiles_across;
-    size_t first_tile; /* of the batch in progress */
-    atomic_uint_fast64_t samples, useful, rays, points;
+    size_t tiles_across, tile_count;
+    double deadline;         /* when to stop for a while and tell how far the frame is */
+    atomic_size_t next_tile; /* to be done; those before it are done or in hand */
+    atomic_uint_fast64_t samples, useful, rays, points, camera_rays;
+    atomic_uint_fast64_t primary_ns, shade_ns; /* sums over the threads */
 };
 
 /* Pixels of tile `index`: columns x0 ... x1 - 1, rows y0 ... y1 - 1. */
@@ -74,11 +73,29 @@ static inline struct tile frame_tile(const struct frame *frame, size_t index)
                          y + TILE < film->height ? y + TILE : film->height};
 }
 
-/* Loop bodies; index counts tiles from first_tile. */
-void primary_tile(void *data, size_t index); /* fills hits */
-void shade_tile(void *data, size_t index);   /* lights hits and adds them to the film */
+/* Where the camera sample looks through `count` pixels of a row, in pixels from the picture's upper left corner, and in
+ * which directions. All arrays: [count] */
+void primary_positions(const struct frame *frame, uint32_t row, uint32_t column, uint32_t count, float *x, float *y);
+void primary_directions(const struct frame *frame, uint32_t count, const float *x, const float *y, float *direction_x,
+                        float *direction_y, float *direction_z);
+
+/* Fills the tile's hits. */
+void primary_tile(const struct frame *frame, struct tile tile);
+
+/* Lights the tile's hits and adds them to the film. */
+void shade_tile(const struct frame *frame, struct tile tile, frame_counts *counts);
 
 /* The function that tells whether light reaches a point of the scene (given as user); NULL if it passes everything. */
 helio_visibility shade_visibility(const helio_renderer *renderer);
+
+/* Works on the tiles of the step for a while, until all are done if slice_ms is infinite, and adds to the times of
+ * info. Returns how many tiles of the step are done: the first ones. */
+size_t frame_work(struct frame *frame, double slice_ms, helio_frame_info *info);
+
+/* Makes the picture of a frame that stopped when the first tiles of its step were done. */
+void frame_finish(struct frame *frame, size_t tiles_done);
+
+/* Monotonic. */
+double frame_milliseconds(void);
 
 #endif

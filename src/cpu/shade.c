@@ -5,119 +5,194 @@
 #include "cpu/renderer.h"
 #include "sampling/estimate.h"
 
-typedef struct tile_counts {
-    uint64_t samples, useful, rays, points;
-} tile_counts;
-
 /* The shadow catcher stands for any matte ground, so its own colour does not matter. */
 static const helio_material catcher_material = {.kind = HELIO_MATERIAL_DIFFUSE, .diffuse = {1, 1, 1}};
+
+/* ---- points ---- */
 
 static void light_reaches(void *user, const helio_shading_point *point, uint32_t count, const float *x, const float *y,
                           const float *z, bool *visible)
 {
-    vec3 position = vec3_from(point->position), normal = vec3_from(point->geometric_normal);
-    for (uint32_t i = 0; i < count; i++)
-        visible[i] = !scene_occluded(user, position, normal, (vec3){x[i], y[i], z[i]});
-}
-
-static helio_shading_point shading_point(const struct frame *frame, const primary_hit *hit, uint32_t pixel)
-{
-    helio_shading_point point = {.material = hit->kind == PRIMARY_CATCHER ? catcher_material : hit->material};
-    vec3_to(hit->position, point.position);
-    vec3_to(hit->normal, point.normal);
-    vec3_to(hit->geometric_normal, point.geometric_normal);
-    vec3_to(scale(hit->direction, -1.0f), point.view);
-    uint32_t seed = hash_combine(hash_combine(frame->seed, frame->step.camera_sample), frame->step.part);
-    point.seed = frame->renderer->desc.no_decorrelation ? seed : hash_combine(seed, pixel);
-    return point;
-}
-
-static void add_background(const struct frame *frame, const primary_hit *hit, double weight, double sum[3])
-{
-    float direction[3], radiance[3];
-    if (!frame->renderer->film.shows_background)
-        return;
-    vec3_to(hit->direction, direction);
-    helio_environment_filtered(frame->renderer->desc.environment, direction, radiance);
-    for (int c = 0; c < 3; c++)
-        sum[c] += weight * (double)radiance[c];
-}
-
-static void add_surface(film_surface *surface, const primary_hit *hit)
-{
-    const helio_material *material = &hit->material;
-    const float normal[3] = {hit->normal.x, hit->normal.y, hit->normal.z};
-    const float position[3] = {hit->position.x, hit->position.y, hit->position.z};
-    for (int c = 0; c < 3; c++) {
-        float specular = material->kind == HELIO_MATERIAL_PHONG ? material->specular[c] : 0.0f;
-        surface->albedo[c] += (double)(material->diffuse[c] + specular);
-        surface->normal[c] += (double)normal[c];
-        surface->position[c] += (double)position[c];
-    }
-    surface->depth += (double)hit->depth;
-    surface->count += 1.0;
-}
-
-static void add_light(const primary_hit *hit, const estimate_result *result, double weight, film_pixel *pixel)
-{
-    if (hit->kind == PRIMARY_CATCHER) {
-        pixel->catcher += weight;
-        pixel->reaching += weight * (double)luminance(result->visible);
-        pixel->unoccluded += weight * (double)luminance(result->unoccluded);
-        return;
-    }
-    pixel->covered += weight;
-    pixel->object += hit->kind == PRIMARY_OBJECT ? weight : 0.0;
-    for (int c = 0; c < 3; c++)
-        pixel->rgb[c] += weight * (double)result->visible[c];
-}
-
-static void shade_pixel(const struct frame *frame, uint32_t index, tile_counts *counts)
-{
-    const helio_renderer *renderer = frame->renderer;
-    const primary_hit *hit = &renderer->hits[index];
-    film_pixel *pixel = &renderer->film.pixels[index];
-    double weight = frame->step.samples;
-    pixel->weight += weight;
-    if (hit->kind == PRIMARY_MISS) {
-        add_background(frame, hit, weight, pixel->rgb);
-        return;
-    }
-    if (hit->kind == PRIMARY_CATCHER)
-        add_background(frame, hit, weight, pixel->catcher_background);
-    else if (renderer->film.surfaces && frame->step.part == 0)
-        add_surface(&renderer->film.surfaces[index], hit);
-
-    helio_shading_point point = shading_point(frame, hit, index);
-    estimate_result result;
-    estimate_point(renderer->pools, &point, &frame->estimate, &result);
-    add_light(hit, &result, weight, pixel);
-    counts->samples += result.info.samples;
-    counts->useful += result.info.useful;
-    counts->rays += result.info.rays;
-    counts->points += frame->step.part == 0;
-}
-
-static void share_counts(struct frame *frame, const tile_counts *counts)
-{
-    atomic_fetch_add_explicit(&frame->samples, counts->samples, memory_order_relaxed);
-    atomic_fetch_add_explicit(&frame->useful, counts->useful, memory_order_relaxed);
-    atomic_fetch_add_explicit(&frame->rays, counts->rays, memory_order_relaxed);
-    atomic_fetch_add_explicit(&frame->points, counts->points, memory_order_relaxed);
-}
-
-void shade_tile(void *data, size_t index)
-{
-    struct frame *frame = data;
-    struct tile tile = frame_tile(frame, frame->first_tile + index);
-    tile_counts counts = {0};
-    for (uint32_t row = tile.y0; row < tile.y1; row++)
-        for (uint32_t column = tile.x0; column < tile.x1; column++)
-            shade_pixel(frame, row * frame->renderer->film.width + column, &counts);
-    share_counts(frame, &counts);
+    scene_find_visible(user, vec3_from(point->position), vec3_from(point->geometric_normal), count, x, y, z, visible);
 }
 
 helio_visibility shade_visibility(const helio_renderer *renderer)
 {
     return renderer->desc.no_visibility ? NULL : light_reaches;
+}
+
+static const helio_material *material_of(const helio_renderer *renderer, size_t index)
+{
+    const struct hits *hits = &renderer->hits;
+    const helio_scene *scene = renderer->desc.scene;
+    if (hits->kinds[index] == HIT_CATCHER)
+        return &catcher_material;
+    if (hits->kinds[index] == HIT_PLANE)
+        return &scene->ground_material;
+    return hits->materials ? &hits->materials[index] : &scene->material;
+}
+
+/* direction: of the camera ray */
+static void make_point(const struct frame *frame, size_t index, vec3 direction, helio_shading_point *point)
+{
+    const helio_renderer *renderer = frame->renderer;
+    const hit_surface *surface = &renderer->hits.surfaces[index];
+    point->material = *material_of(renderer, index);
+    vec3_to(surface->position, point->position);
+    vec3_to(surface->normal, point->normal);
+    vec3_to(surface->geometric_normal, point->geometric_normal);
+    vec3_to(scale(direction, -1.0f), point->view);
+    point->seed = renderer->desc.no_decorrelation ? frame->step_seed : hash_combine(frame->step_seed, (uint32_t)index);
+}
+
+/* ---- sums ---- */
+
+static void add_surface(const struct frame *frame, const helio_shading_point *point, film_surface *surface)
+{
+    const helio_material *material = &point->material;
+    for (int c = 0; c < 3; c++) {
+        float specular = material->kind == HELIO_MATERIAL_PHONG ? material->specular[c] : 0.0f;
+        surface->albedo[c] += (double)(material->diffuse[c] + specular);
+        surface->normal[c] += (double)point->normal[c];
+        surface->position[c] += (double)point->position[c];
+    }
+    vec3 from_eye = subtract(vec3_from(point->position), frame->camera.eye);
+    surface->depth += (double)dot(from_eye, frame->camera.forward);
+    surface->count += 1.0;
+}
+
+static void add_light(const float radiance[3], double weight, double sum[3])
+{
+    for (int c = 0; c < 3; c++)
+        sum[c] += weight * (double)radiance[c];
+}
+
+static void add_estimate(hit_kind kind, const estimate_result *result, double weight, film_light *light)
+{
+    if (kind == HIT_CATCHER) {
+        light->catcher += weight;
+        light->reaching += weight * (double)luminance(result->visible);
+        light->unoccluded += weight * (double)luminance(result->unoccluded);
+        return;
+    }
+    light->covered += weight;
+    light->object += kind == HIT_OBJECT ? weight : 0.0;
+    add_light(result->visible, weight, light->rgb);
+}
+
+/* ---- pixels ---- */
+
+/* What is known of the pixels of one row of a tile before their light. */
+typedef struct pixel_row {
+    size_t first;                                                  /* pixel of the picture */
+    const uint8_t *kinds;                                          /* of hit_kind */
+    float direction_x[TILE], direction_y[TILE], direction_z[TILE]; /* of the camera rays, if any hit something */
+    float background[TILE][4];                                     /* behind those that it may be seen through */
+} pixel_row;
+
+static void light_pixel(const struct frame *frame, const pixel_row *row, uint32_t i, helio_shading_point *point,
+                        estimate_result *result, frame_counts *counts)
+{
+    vec3 direction = {row->direction_x[i], row->direction_y[i], row->direction_z[i]};
+    make_point(frame, row->first + i, direction, point);
+    estimate_point(frame->renderer->pools, point, &frame->estimate, result);
+    counts->samples += result->info.samples;
+    counts->useful += result->info.useful;
+    counts->rays += result->info.rays;
+    counts->points += frame->step.part == 0;
+}
+
+static void add_step(const struct frame *frame, const pixel_row *row, uint32_t i, film_pixel *pixel,
+                     frame_counts *counts)
+{
+    hit_kind kind = row->kinds[i];
+    double weight = frame->step.samples;
+    if (kind == HIT_NOTHING) {
+        add_light(row->background[i], weight, pixel->light.rgb);
+        return;
+    }
+    helio_shading_point point;
+    estimate_result result;
+    light_pixel(frame, row, i, &point, &result, counts);
+    add_estimate(kind, &result, weight, &pixel->light);
+    if (kind == HIT_CATCHER)
+        add_light(row->background[i], weight, pixel->light.catcher_background);
+    else if (frame->renderer->film.albedo && frame->step.part == 0)
+        add_surface(frame, &point, &pixel->surface);
+}
+
+static void shade_pixel(const struct frame *frame, const pixel_row *row, uint32_t i, frame_counts *counts)
+{
+    const struct film *film = &frame->renderer->film;
+    film_pixel pixel = {0};
+    if (!frame->step.is_first)
+        film_load(film, row->first + i, &pixel);
+    add_step(frame, row, i, &pixel, counts);
+    if (frame->step.is_last)
+        film_develop(film, row->first + i, &pixel, frame->weight);
+    else
+        film_store(film, row->first + i, &pixel);
+}
+
+/* The same without sums, see is_simple(). */
+static void shade_pixel_at_once(const struct frame *frame, const pixel_row *row, uint32_t i, frame_counts *counts)
+{
+    const struct film *film = &frame->renderer->film;
+    if (row->kinds[i] == HIT_NOTHING) {
+        film_put_background(film, row->first + i, 1, row->background[i]);
+        return;
+    }
+    helio_shading_point point;
+    estimate_result result;
+    light_pixel(frame, row, i, &point, &result, counts);
+    const float rgba[4] = {result.visible[0], result.visible[1], result.visible[2], 1.0f};
+    film_put(film, row->first + i, rgba, row->kinds[i] == HIT_OBJECT ? 1.0f : 0.0f);
+}
+
+/* ---- tiles ---- */
+
+/* Returns how many of the pixels hit something. */
+static uint32_t find_row(const struct frame *frame, uint32_t y, struct tile tile, pixel_row *row)
+{
+    const helio_renderer *renderer = frame->renderer;
+    uint32_t count = tile.x1 - tile.x0, hit_count = 0, open_count = 0;
+    float position_x[TILE], position_y[TILE];
+    row->first = (size_t)y * renderer->film.width + tile.x0;
+    row->kinds = renderer->hits.kinds + row->first;
+    for (uint32_t i = 0; i < count; i++) {
+        hit_count += row->kinds[i] != HIT_NOTHING;
+        open_count += row->kinds[i] == HIT_NOTHING || row->kinds[i] == HIT_CATCHER;
+    }
+    primary_positions(frame, y, tile.x0, count, position_x, position_y);
+    if (hit_count > 0)
+        primary_directions(frame, count, position_x, position_y, row->direction_x, row->direction_y, row->direction_z);
+    if (open_count > 0 && renderer->film.shows_background)
+        background_fill(&frame->background, count, position_x, position_y, row->background);
+    return hit_count;
+}
+
+/* One step is the whole frame, and a pixel needs no sums. */
+static bool is_simple(const struct frame *frame)
+{
+    const helio_renderer *renderer = frame->renderer;
+    return frame->step.is_first && frame->step.is_last && !renderer->film.albedo &&
+           renderer->desc.scene->ground != HELIO_GROUND_SHADOW;
+}
+
+void shade_tile(const struct frame *frame, struct tile tile, frame_counts *counts)
+{
+    bool simple = is_simple(frame);
+    uint32_t count = tile.x1 - tile.x0;
+    pixel_row row = {0}; /* the background is black and clear where it is not shown */
+    for (uint32_t y = tile.y0; y < tile.y1; y++) {
+        uint32_t hit_count = find_row(frame, y, tile, &row);
+        if (simple && hit_count == 0)
+            film_put_background(&frame->renderer->film, row.first, count, row.background[0]);
+        else if (simple)
+            for (uint32_t i = 0; i < count; i++)
+                shade_pixel_at_once(frame, &row, i, counts);
+        else
+            for (uint32_t i = 0; i < count; i++)
+                shade_pixel(frame, &row, i, counts);
+    }
 }

@@ -5,6 +5,7 @@
 
 #include "core/vector.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 enum { CUBE_FACES = 6, CUBE_MAX_SIZE = 4096 };
@@ -22,15 +23,19 @@ typedef struct cube_position {
     float u, v;
 } cube_position;
 
-/* Where a direction (not 0, any length) meets the cube. On edges X wins over Y over Z. */
+/* Where a direction (not 0, any length) meets the cube. On edges X wins over Y over Z. By selection, as directions come
+ * in no order that a processor could guess branches from. */
 static inline cube_position cube_project(vec3 d)
 {
     float x = fabsf(d.x), y = fabsf(d.y), z = fabsf(d.z);
-    if (x >= y && x >= z)
-        return d.x >= 0.0f ? (cube_position){0, -d.z / x, -d.y / x} : (cube_position){1, d.z / x, -d.y / x};
-    if (y >= z)
-        return d.y >= 0.0f ? (cube_position){2, d.x / y, d.z / y} : (cube_position){3, d.x / y, -d.z / y};
-    return d.z >= 0.0f ? (cube_position){4, d.x / z, -d.y / z} : (cube_position){5, -d.x / z, -d.y / z};
+    bool on_x = (x >= y) & (x >= z), on_y = !on_x & (y >= z);
+    float major = on_x ? d.x : on_y ? d.y : d.z, size = fabsf(major);
+    bool negative = !(major >= 0.0f);
+    float right = on_x ? -d.z : d.x, down = on_y ? d.z : -d.y;
+    right = (negative & !on_y) ? -right : right;
+    down = (negative & on_y) ? -down : down;
+    uint32_t axis = on_x ? 0 : on_y ? 2 : 4;
+    return (cube_position){axis + negative, right / size, down / size};
 }
 
 /* Unit vector towards a point of a face. */

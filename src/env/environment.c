@@ -29,25 +29,31 @@ static helio_status resolve_desc(const helio_environment_desc *given, helio_envi
     return helio_layout_guess(desc->width, desc->height, desc->layout, &desc->layout);
 }
 
-static void fill_solid_angles(helio_environment *environment)
+/* A row of texels with u <= 0 and v <= 0, and its mirror images. Neighbours share two corners. */
+static void fill_solid_angle_row(void *data, size_t row)
 {
-    uint32_t size = environment->size;
-    for (uint32_t row = 0; row < size; row++)
-        for (uint32_t column = 0; column < size; column++)
-            environment->solid_angle[(size_t)row * size + column] =
-                (float)cube_solid_angle(2.0 * column / size - 1.0, 2.0 * (column + 1.0) / size - 1.0,
-                                        2.0 * row / size - 1.0, 2.0 * (row + 1.0) / size - 1.0);
+    helio_environment *environment = data;
+    size_t size = environment->size, last = size - 1;
+    float *upper = environment->solid_angle + row * size, *lower = environment->solid_angle + (last - row) * size;
+    double v0 = 2.0 * (double)row / (double)size - 1.0, v1 = 2.0 * (double)(row + 1) / (double)size - 1.0;
+    double left = cube_corner_solid_angle(-1.0, v1) - cube_corner_solid_angle(-1.0, v0);
+    for (size_t column = 0; 2 * column < size; column++) {
+        double u = 2.0 * (double)(column + 1) / (double)size - 1.0;
+        double right = cube_corner_solid_angle(u, v1) - cube_corner_solid_angle(u, v0);
+        upper[column] = upper[last - column] = lower[column] = lower[last - column] = (float)(right - left);
+        left = right;
+    }
 }
 
 static helio_status allocate_all(helio_environment *environment)
 {
     helio_context *context = environment->context;
     size_t texels = (size_t)environment->size * environment->size;
-    environment->clean = context_allocate(context, (size_t)environment->width * environment->height, 3 * sizeof(float));
     environment->cube = context_allocate(context, CUBE_FACES * texels, 3 * sizeof(float));
     environment->solid_angle = context_allocate(context, texels, sizeof(float));
     environment->row_faults = context_allocate(context, environment->height, sizeof *environment->row_faults);
-    if (!environment->clean || !environment->cube || !environment->solid_angle || !environment->row_faults)
+    environment->row_readings = context_allocate(context, environment->height, sizeof *environment->row_readings);
+    if (!environment->cube || !environment->solid_angle || !environment->row_faults || !environment->row_readings)
         return fail(HELIO_ERR_MEMORY, "no memory for an environment of %ux%u pixels and a cube of 6 x %u^2 texels",
                     environment->width, environment->height, environment->size);
     return resampler_create(context, environment->layout, environment->width, environment->height, environment->size,
@@ -78,7 +84,7 @@ helio_status helio_environment_create(helio_context *context, const helio_enviro
         helio_environment_destroy(environment);
         return status;
     }
-    fill_solid_angles(environment);
+    context_parallel_for(context, (environment->size + 1) / 2, fill_solid_angle_row, environment);
     *out = environment;
     return HELIO_OK;
 }
@@ -89,10 +95,10 @@ void helio_environment_destroy(helio_environment *environment)
         return;
     helio_context *context = environment->context;
     resampler_destroy(context, environment->resampler);
+    context_release(context, environment->row_readings);
     context_release(context, environment->row_faults);
     context_release(context, environment->solid_angle);
     context_release(context, environment->cube);
-    context_release(context, environment->clean);
     context_release(context, environment);
 }
 
@@ -103,27 +109,47 @@ typedef struct hygiene {
     const float *rgb;
 } hygiene;
 
-/* Writes a pixel that is finite and not negative. */
-static void clean_pixel(pixel_fault fault, const float in[3], float out[3])
+/* Is there perhaps a fault among these floats? No for floats from 0 to PIXEL_BRIGHTEST, whose bits as an integer are
+ * from 0 to some limit; yes for all others, -0 included. */
+static bool may_have_faults(const float *values, size_t count)
 {
-    bool dark = fault == PIXEL_NAN || fault == PIXEL_INFINITE;
-    for (int c = 0; c < 3; c++)
-        out[c] = !dark && in[c] > 0.0f ? in[c] : 0.0f; /* -0 becomes 0, too */
+    const float brightest = PIXEL_BRIGHTEST;
+    uint32_t limit, seen = 0;
+    memcpy(&limit, &brightest, sizeof limit);
+    for (size_t i = 0; i < count; i++) {
+        uint32_t bits;
+        memcpy(&bits, values + i, sizeof bits);
+        seen |= bits | (bits + (INT32_MAX - limit)); /* beyond the limit the sum overflows into the sign */
+    }
+    return seen >> 31;
 }
 
-static void clean_row(void *data, size_t row)
+static void count_faults(const float *rgb, size_t pixels, helio_bad_pixels *bad)
 {
+    uint64_t faults[PIXEL_GOOD + 1] = {0};
+    for (size_t i = 0; i < pixels; i++)
+        faults[pixel_fault_of(rgb + 3 * i)]++;
+    bad->nan += faults[PIXEL_NAN];
+    bad->infinite += faults[PIXEL_INFINITE];
+    bad->negative += faults[PIXEL_NEGATIVE];
+}
+
+static void check_row(void *data, size_t row)
+{
+    enum { PIECE = 256 }; /* pixels that are looked at one by one if there is a fault among them */
     hygiene *work = data;
     helio_environment *environment = work->environment;
-    size_t first = row * environment->width * 3;
-    uint64_t faults[PIXEL_GOOD + 1] = {0};
-    for (size_t i = first; i < first + (size_t)environment->width * 3; i += 3) {
-        pixel_fault fault = pixel_fault_of(work->rgb + i);
-        clean_pixel(fault, work->rgb + i, environment->clean + i);
-        faults[fault]++;
+    const float *rgb = work->rgb + row * environment->width * 3;
+    helio_bad_pixels bad = {0};
+    for (size_t first = 0; first < environment->width; first += PIECE) {
+        size_t count = environment->width - first < PIECE ? environment->width - first : PIECE;
+        if (may_have_faults(rgb + first * 3, count * 3))
+            count_faults(rgb + first * 3, count, &bad);
     }
-    environment->row_faults[row] =
-        (helio_bad_pixels){faults[PIXEL_NAN], faults[PIXEL_INFINITE], faults[PIXEL_NEGATIVE]};
+    environment->row_faults[row] = bad;
+    environment->row_readings[row] = bad.nan + bad.infinite > 0 || row + 1 == environment->height ? ROW_BY_PIXEL
+                                     : bad.negative > 0                                           ? ROW_CLAMPED
+                                                                                                  : ROW_AS_IT_IS;
 }
 
 helio_status helio_environment_update(helio_environment *environment, const float *rgb, helio_environment_info *info)
@@ -131,8 +157,8 @@ helio_status helio_environment_update(helio_environment *environment, const floa
     if (environment == NULL || rgb == NULL)
         return fail(HELIO_ERR_ARGUMENT, "helio_environment_update needs an environment and pixels");
     hygiene work = {.environment = environment, .rgb = rgb};
-    context_parallel_for(environment->context, environment->height, clean_row, &work);
-    resampler_run(environment->context, environment->resampler, environment->clean, environment->cube);
+    context_parallel_for(environment->context, environment->height, check_row, &work);
+    resampler_run(environment->context, environment->resampler, rgb, environment->row_readings, environment->cube);
     environment->frame++;
     if (info == NULL)
         return HELIO_OK;

@@ -16,11 +16,11 @@ struct helio_environment {
     uint32_t width, height;
     helio_layout layout;
     uint64_t frame;
-    float *clean;       /* [height][width][3]: the map after hygiene */
     float *cube;        /* [6][R][R][3] */
     float *solid_angle; /* [R][R], sr, the same for all faces */
     resampler *resampler;
     helio_bad_pixels *row_faults; /* [height] */
+    uint8_t *row_readings;        /* [height], see resampler_run() */
     vec3 map_axes[3]; /* world axes X Y Z as seen in the map's space: rows of an orthogonal matrix's transpose */
     float intensity;
 };

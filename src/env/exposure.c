@@ -3,6 +3,8 @@
 
 #include "core/context.h"
 
+#include <string.h>
+
 enum { BLOCKS = 8, LIGHTS = CUBE_FACES * BLOCKS * BLOCKS };
 
 /* A block of texels taken as one distant light. */
@@ -17,35 +19,87 @@ typedef struct measurement {
     block_light lights[LIGHTS];
 } measurement;
 
-/* Adds a cell of a grid that divides the face into grid x grid cells and each texel into a whole number of them. */
-static void add_cell(const helio_environment *environment, uint32_t face, uint32_t grid, uint32_t row, uint32_t column,
-                     block_light *light)
+/* Each face is divided into grid x grid cells, at least one for each block, and each texel into a whole number of them.
+ */
+typedef struct cell_grid {
+    uint32_t size, split; /* cells along an edge of the face, and of a texel */
+} cell_grid;
+
+static void read_cells(const helio_environment *environment, const cell_grid *grid, uint32_t face, uint32_t row,
+                       uint32_t first_column, uint32_t count, float *restrict values, float *restrict solid_angles)
 {
-    uint32_t size = environment->size, split = grid / size;
-    float value = luminance(environment_texel(environment, face, row / split, column / split));
-    double u = 2.0 * column / grid - 1.0, v = 2.0 * row / grid - 1.0, step = 2.0 / grid;
-    double solid_angle = split == 1 ? (double)environment->solid_angle[(size_t)row * size + column]
-                                    : cube_solid_angle(u, u + step, v, v + step);
-    double flux = (double)value * solid_angle;
-    vec3 d = cube_direction(face, (float)(u + 0.5 * step), (float)(v + 0.5 * step));
-    light->flux += flux;
-    light->moment[0] += flux * (double)d.x;
-    light->moment[1] += flux * (double)d.y;
-    light->moment[2] += flux * (double)d.z;
-    light->max_luminance = value > light->max_luminance ? value : light->max_luminance;
+    const float *texels = environment_texel(environment, face, row / grid->split, 0);
+    if (grid->split == 1) {
+        for (uint32_t i = 0; i < count; i++)
+            values[i] = luminance(texels + 3 * (size_t)(first_column + i));
+        memcpy(solid_angles, environment->solid_angle + (size_t)row * grid->size + first_column, count * sizeof(float));
+        return;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        double step = 2.0 / grid->size, u = step * (first_column + i) - 1.0, v = step * row - 1.0;
+        values[i] = luminance(texels + 3 * (size_t)((first_column + i) / grid->split));
+        solid_angles[i] = (float)cube_solid_angle(u, u + step, v, v + step);
+    }
+}
+
+enum { MAX_COLUMNS = CUBE_MAX_SIZE / BLOCKS, STRIP_ROWS = 32 };
+
+/* Sums over the cells of a column in some rows: few enough for floats. */
+typedef struct column_sums {
+    float u[MAX_COLUMNS];
+    float flux[MAX_COLUMNS];
+    float along_axis[MAX_COLUMNS], along_down[MAX_COLUMNS]; /* of the moment */
+    float brightest[MAX_COLUMNS];
+} column_sums;
+
+static void add_row(float v, const float *restrict values, const float *restrict solid_angles, uint32_t count,
+                    column_sums *restrict sums)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        float u = sums->u[i], flux = values[i] * solid_angles[i];
+        float along_axis = flux / sqrtf(1.0f + u * u + v * v);
+        sums->flux[i] += flux;
+        sums->along_axis[i] += along_axis;
+        sums->along_down[i] += along_axis * v;
+        sums->brightest[i] = values[i] > sums->brightest[i] ? values[i] : sums->brightest[i];
+    }
+}
+
+static void add_columns(const column_sums *sums, uint32_t face, uint32_t count, block_light *light)
+{
+    const cube_face *f = &cube_faces[face];
+    for (uint32_t i = 0; i < count; i++) {
+        double axis = (double)sums->along_axis[i], right = axis * (double)sums->u[i],
+               down = (double)sums->along_down[i];
+        light->flux += (double)sums->flux[i];
+        light->moment[0] += axis * (double)f->axis.x + right * (double)f->right.x + down * (double)f->down.x;
+        light->moment[1] += axis * (double)f->axis.y + right * (double)f->right.y + down * (double)f->down.y;
+        light->moment[2] += axis * (double)f->axis.z + right * (double)f->right.z + down * (double)f->down.z;
+        light->max_luminance = fmaxf(light->max_luminance, sums->brightest[i]);
+    }
 }
 
 static void measure_block(void *data, size_t index)
 {
     measurement *work = data;
-    const helio_environment *environment = work->environment;
-    uint32_t size = environment->size, grid = (BLOCKS + size - 1) / size * size; /* at least a cell for each block */
+    uint32_t size = work->environment->size, split = (BLOCKS + size - 1) / size;
+    cell_grid grid = {size * split, split};
     uint32_t face = (uint32_t)(index / (BLOCKS * BLOCKS)), block = (uint32_t)(index % (BLOCKS * BLOCKS));
-    uint32_t row0 = block / BLOCKS * grid / BLOCKS, row1 = (block / BLOCKS + 1) * grid / BLOCKS;
-    uint32_t column0 = block % BLOCKS * grid / BLOCKS, column1 = (block % BLOCKS + 1) * grid / BLOCKS;
-    for (uint32_t row = row0; row < row1; row++)
-        for (uint32_t column = column0; column < column1; column++)
-            add_cell(environment, face, grid, row, column, &work->lights[index]);
+    uint32_t first_row = block / BLOCKS * grid.size / BLOCKS, end_row = (block / BLOCKS + 1) * grid.size / BLOCKS;
+    uint32_t column = block % BLOCKS * grid.size / BLOCKS;
+    uint32_t count = (block % BLOCKS + 1) * grid.size / BLOCKS - column;
+    for (uint32_t row = first_row; row < end_row; row += STRIP_ROWS) {
+        float values[MAX_COLUMNS], solid_angles[MAX_COLUMNS];
+        column_sums sums = {.u = {0}};
+        for (uint32_t i = 0; i < count; i++)
+            sums.u[i] = (2.0f * (float)(column + i) + 1.0f) / (float)grid.size - 1.0f;
+        for (uint32_t i = row; i < end_row && i < row + STRIP_ROWS; i++) {
+            float v = (2.0f * (float)i + 1.0f) / (float)grid.size - 1.0f;
+            read_cells(work->environment, &grid, face, i, column, count, values, solid_angles);
+            add_row(v, values, solid_angles, count, &sums);
+        }
+        add_columns(&sums, face, count, &work->lights[index]);
+    }
 }
 
 /* Light that falls on a surface with this normal. */

@@ -1,45 +1,89 @@
 /* SPDX-License-Identifier: MIT
  * overlap.h - which pixels of a map each texel of the cube covers, and with what share of its solid angle.
  *
- * Each layout has one generator of overlaps. They depend on the shapes alone, so they are found once; a frame only
- * sums. */
+ * Each layout has generators of overlaps. They depend on the shapes alone, so they are found once; a frame only sums.
+ */
 #ifndef HELIOSTAT_SRC_OVERLAP_H
 #define HELIOSTAT_SRC_OVERLAP_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
+#include <heliostat/core.h>
 
-/* A pixel under a texel. weight: the part of the texel's solid angle that the pixel covers; a texel's weights sum to 1.
- */
-typedef struct overlap {
-    uint32_t row, column; /* of the pixel */
-    float weight;
-} overlap;
+enum { OVERLAP_RUN_LIMIT = 32, OVERLAP_AHEAD = 16 };
 
-/* One face of the cube over one map: what a generator needs. */
+/* Neighbours in one row of the map under one texel. A lat-long map is taken in quarters of its width, so that it can be
+ * turned by quarters and mirrored without wrapping a run around. */
+typedef struct overlap_run {
+    uint32_t column; /* of the first pixel, in its quarter */
+    uint16_t row;
+    uint8_t count;                 /* pixels, 1 to OVERLAP_RUN_LIMIT; each has a weight */
+    uint8_t quarter : 2, last : 1; /* last of its texel */
+} overlap_run;
+
+/* A rectangle of texels, and where its runs and weights begin. They follow each other in rows. */
+typedef struct overlap_tile {
+    uint32_t first_row, end_row, first_column, end_column;
+    size_t run, weight;
+} overlap_tile;
+
+/* The texels of a quarter of a face, those with u <= 0 and v <= 0. They come in tiles that see a small part of the map
+ * each, so that what rows of texels have in common is still in the cache. A weight is the part of the texel's solid
+ * angle that the pixel covers; a texel's weights sum to 1. */
+typedef struct overlap_list {
+    size_t tile_count;
+    overlap_tile *tiles;
+    overlap_run *runs; /* OVERLAP_AHEAD more of them than there are, zero, so that one may look ahead */
+    float *weights;
+} overlap_list;
+
+/* One face of the cube over one map. */
 typedef struct overlap_geometry {
     uint32_t size;                  /* R */
-    uint32_t map_width, map_height; /* pixels; of one face of a strip */
-    /* Lat-long: [map_height + 1], sine of the latitude of the borders between rows, from 1 down to -1.
-     * Strips: [map_width + 1], face coordinates of the borders between pixels, from -1 to 1. */
-    const double *borders;
+    uint32_t map_width, map_height; /* pixels; of one face of a strip. Lat-long: four divides the width */
+    /* Borders between rows of a lat-long map: [map_height + 1], sine of latitude, from 1 down to -1.
+     * Borders between pixels of a strip: [map_width + 1], face coordinates, from -1 to 1. */
+    double *borders;
+    double *cosines;      /* lat-long: [map_height + 1], of the same latitudes */
+    double *column_sines; /* lat-long: [map_width / 4 + 1], sine of column k's border's angle, 2 pi k / map_width */
 } overlap_geometry;
 
-/* Overlaps of texel (row, column) of a face, at most overlap_..._bound() of them. Returns their number. */
-typedef uint32_t (*overlap_generator)(const overlap_geometry *geometry, uint32_t row, uint32_t column,
-                                      overlap *overlaps);
-typedef size_t (*overlap_bound)(const overlap_geometry *geometry, uint32_t row, uint32_t column);
+/* Takes the overlaps of a tile, one texel after the other. */
+typedef struct overlap_writer {
+    overlap_run *runs; /* NULL: they are only counted */
+    float *weights;
+    size_t run_count, weight_count; /* so far */
+    size_t texel_weight;            /* weights before this texel */
+    double area;                    /* of this texel so far */
+} overlap_writer;
+
+/* Writes the overlaps of the texels first_column ... end_column - 1 of a row. A writer that only counts may get any
+ * positive areas. */
+typedef void (*overlap_generator)(const overlap_geometry *geometry, uint32_t row, uint32_t first_column,
+                                  uint32_t end_column, overlap_writer *writer);
 
 /* Lat-long maps: the faces +Z and +Y. */
-uint32_t overlap_side(const overlap_geometry *geometry, uint32_t row, uint32_t column, overlap *overlaps);
-size_t overlap_side_bound(const overlap_geometry *geometry, uint32_t row, uint32_t column);
-uint32_t overlap_pole(const overlap_geometry *geometry, uint32_t row, uint32_t column, overlap *overlaps);
-size_t overlap_pole_bound(const overlap_geometry *geometry, uint32_t row, uint32_t column);
+helio_status overlap_latlong_geometry(helio_context *context, uint32_t size, uint32_t width, uint32_t height,
+                                      overlap_geometry *geometry);
+void overlap_side(const overlap_geometry *geometry, uint32_t row, uint32_t first_column, uint32_t end_column,
+                  overlap_writer *writer);
+void overlap_pole(const overlap_geometry *geometry, uint32_t row, uint32_t first_column, uint32_t end_column,
+                  overlap_writer *writer);
 
 /* A square face of a strip. */
-uint32_t overlap_strip(const overlap_geometry *geometry, uint32_t row, uint32_t column, overlap *overlaps);
-size_t overlap_strip_bound(const overlap_geometry *geometry, uint32_t row, uint32_t column);
+helio_status overlap_strip_geometry(helio_context *context, uint32_t size, uint32_t map_size, bool openexr,
+                                    overlap_geometry *geometry);
+void overlap_strip(const overlap_geometry *geometry, uint32_t row, uint32_t first_column, uint32_t end_column,
+                   overlap_writer *writer);
+
+void overlap_geometry_release(helio_context *context, overlap_geometry *geometry);
+
+/* For generators: the areas, sr, that the texel covers of some neighbours in a row, at most OVERLAP_RUN_LIMIT. begin:
+ * the first of them and its place. Pixels with an area of 0 are left out. */
+void overlap_write(overlap_writer *writer, overlap_run begin, const double *areas, uint32_t count);
+void overlap_end_texel(overlap_writer *writer);
+
+helio_status overlap_list_create(helio_context *context, const overlap_geometry *geometry, overlap_generator generate,
+                                 overlap_list *list);
+void overlap_list_release(helio_context *context, overlap_list *list); /* {0} is fine */
 
 /* Face coordinate of the border before texel `index` of a cube of this size. */
 static inline double texel_border(uint32_t index, uint32_t size)

@@ -1,112 +1,55 @@
 /* SPDX-License-Identifier: MIT
  *
  * Lat-long maps. Solid angle is d(longitude) d(sin latitude), so in these coordinates pixels are rectangles, and a
- * texel is bounded by its edges, which are great circles:
+ * texel is bounded by its edges, which are great circles (great_circle.h). So every overlap is exact, and what one
+ * texel does not get of a pixel its neighbour gets: no light is lost at edges or poles, whatever the sizes.
  *
- *   sin(latitude) = k cos t / sqrt(1 - k^2 sin^2 t),   with integral   asin(k sin t),
- *
- * t the longitude from the circle's highest point, k the sine of its latitude there. Where the circle crosses a border
- * between rows follows from the same formula. So every overlap is exact, and what one texel does not get of a pixel its
- * neighbour gets: no light is lost at edges or poles, whatever the sizes. */
+ * Longitudes are counted in columns of the map, which run against them: a position p stands for the longitude
+ * 2 pi (1/2 - p / width). */
+#include "core/context.h"
 #include "core/vector.h"
-#include "env/cube.h"
+#include "env/great_circle.h"
 #include "env/overlap.h"
 
 /* Areas below this, in sr, are roundings where nothing overlaps. The least pixel of the largest map is 40 times larger.
  */
 static const double LEAST_AREA = 1e-14;
 
-/* Where a texel lies: its longitudes, sines of latitudes, and the longitudes where its edges meet or turn. */
-typedef struct texel_outline {
-    double from, to, highest, lowest;
-    double stops[10]; /* sorted, the first is from, the last is to */
-    int stop_count;
-    double u0, u1, v0, v1; /* face coordinates; on the pole face u is x and v is z */
-} texel_outline;
+/* ---- the map ---- */
 
-/* ---- great circles ---- */
-
-typedef struct great_circle {
-    double k;         /* sine of the greatest latitude, >= 0 */
-    double longitude; /* where that is */
-    double sign;      /* -1: the circle's southern half */
-} great_circle;
-
-/* A piece of a circle's half on one side of its highest point, from angle near to far: latitude falls from high to low.
- */
-typedef struct circle_piece {
-    double k, sign, near, far;
-    double high, low;                   /* sin(latitude) at near and far */
-    double near_integral, far_integral; /* of sin(latitude) */
-} circle_piece;
-
-static double circle_height(double k, double angle)
+/* Equal steps of latitude; the ends and the middle are exact, so that no light is lost at the poles and no row is
+ * touched that lies beyond the equator. */
+static void fill_borders(overlap_geometry *geometry)
 {
-    double cosine = cos(angle);
-    return k * cosine / sqrt((1.0 - k * k) + k * k * cosine * cosine);
-}
-
-static double circle_integral(double k, double angle)
-{
-    return asin(fmin(1.0, k * sin(angle)));
-}
-
-/* The angle at which the circle comes down to this height, 0 < height < k. */
-static double circle_angle(double k, double height)
-{
-    double squared = height * height * (1.0 - k * k) / (k * k * (1.0 - height * height));
-    return acos(sqrt(fmin(1.0, squared)));
-}
-
-static circle_piece cut_circle(const great_circle *circle, double from, double to)
-{
-    double a = fabs(from - circle->longitude), b = fabs(to - circle->longitude);
-    circle_piece piece = {.k = circle->k, .sign = circle->sign, .near = fmin(a, b), .far = fmax(a, b)};
-    piece.high = circle_height(piece.k, piece.near);
-    piece.low = circle_height(piece.k, piece.far);
-    piece.near_integral = circle_integral(piece.k, piece.near);
-    piece.far_integral = circle_integral(piece.k, piece.far);
-    return piece;
-}
-
-/* Area below a northern piece inside of the band of sines bottom ... top. */
-static double northern_area(const circle_piece *piece, double bottom, double top)
-{
-    if (piece->low >= top)
-        return (top - bottom) * (piece->far - piece->near);
-    if (piece->high <= bottom)
-        return 0.0;
-    double enter = piece->near, leave = piece->far; /* of the band */
-    double enter_integral = piece->near_integral, leave_integral = piece->far_integral;
-    if (piece->high > top) {
-        enter = fmin(fmax(circle_angle(piece->k, top), piece->near), piece->far);
-        enter_integral = circle_integral(piece->k, enter);
+    uint32_t height = geometry->map_height, quarter = geometry->map_width / 4;
+    for (uint32_t k = 0; k <= height; k++) {
+        geometry->borders[k] = cos(PI * k / height);
+        geometry->cosines[k] = sin(PI * k / height);
     }
-    if (piece->low < bottom) {
-        leave = fmin(fmax(circle_angle(piece->k, bottom), enter), piece->far);
-        leave_integral = circle_integral(piece->k, leave);
-    }
-    return (top - bottom) * (enter - piece->near) + (leave_integral - enter_integral) - bottom * (leave - enter);
+    geometry->borders[0] = 1.0;
+    geometry->borders[height] = -1.0;
+    if (height % 2 == 0)
+        geometry->borders[height / 2] = 0.0;
+    for (uint32_t k = 0; k <= quarter; k++)
+        geometry->column_sines[k] = k < quarter ? sin(0.5 * PI * k / quarter) : 1.0;
 }
 
-/* The southern half is the northern one upside down. */
-static double area_below(const circle_piece *piece, double bottom, double top)
+helio_status overlap_latlong_geometry(helio_context *context, uint32_t size, uint32_t width, uint32_t height,
+                                      overlap_geometry *geometry)
 {
-    if (piece->sign > 0)
-        return northern_area(piece, bottom, top);
-    return (top - bottom) * (piece->far - piece->near) - northern_area(piece, -top, -bottom);
+    *geometry = (overlap_geometry){.size = size, .map_width = width, .map_height = height};
+    geometry->borders = context_allocate(context, (size_t)height + 1, sizeof *geometry->borders);
+    geometry->cosines = context_allocate(context, (size_t)height + 1, sizeof *geometry->cosines);
+    geometry->column_sines = context_allocate(context, (size_t)width / 4 + 1, sizeof *geometry->column_sines);
+    if (geometry->borders == NULL || geometry->cosines == NULL || geometry->column_sines == NULL)
+        return HELIO_ERR_MEMORY;
+    fill_borders(geometry);
+    return HELIO_OK;
 }
 
-/* ---- overlaps of any outline ---- */
-
-typedef void (*bounding_circles)(const texel_outline *outline, double longitude, great_circle *upper,
-                                 great_circle *lower);
-
-/* Row of the map that holds a sine of latitude. */
-static uint32_t find_row(const overlap_geometry *geometry, double sine)
+/* The row that holds a sine of latitude; the search begins at a row nearby. */
+static uint32_t find_row(const overlap_geometry *geometry, double sine, uint32_t row)
 {
-    double position = acos(fmin(1.0, fmax(-1.0, sine))) / PI * geometry->map_height;
-    uint32_t row = position < geometry->map_height ? (uint32_t)position : geometry->map_height - 1;
     while (row > 0 && geometry->borders[row] < sine)
         row--;
     while (row + 1 < geometry->map_height && geometry->borders[row + 1] > sine)
@@ -114,232 +57,293 @@ static uint32_t find_row(const overlap_geometry *geometry, double sine)
     return row;
 }
 
-/* Column borders run against the longitude: column c spans longitudes from longitude_of(c + 1) up to longitude_of(c).
- */
-static double longitude_of(const overlap_geometry *geometry, double column)
-{
-    return (0.5 - column / geometry->map_width) * 2 * PI;
-}
+/* ---- overlaps of any outline ---- */
 
-static void find_columns(const overlap_geometry *geometry, const texel_outline *outline, int64_t *first, int64_t *last)
-{
-    *first = (int64_t)floor((0.5 - outline->to / (2 * PI)) * geometry->map_width);
-    *last = (int64_t)floor((0.5 - outline->from / (2 * PI)) * geometry->map_width);
-}
+/* A meridian where the outline begins, ends, turns a corner or passes below an axis. */
+typedef struct stop {
+    double position;
+    angle longitude;
+} stop;
 
-static size_t outline_bound(const overlap_geometry *geometry, const texel_outline *outline)
-{
-    int64_t first, last;
-    find_columns(geometry, outline, &first, &last);
-    uint32_t top = find_row(geometry, outline->highest), bottom = find_row(geometry, outline->lowest);
-    return (size_t)(last - first + 1) * (bottom - top + 1);
-}
+enum { MAX_STOPS = 10 };
 
-/* Adds the areas of a piece of the outline, between two stops, to the rows top ... top + rows - 1 of one column. */
-static void add_piece(const overlap_geometry *geometry, const great_circle *upper, const great_circle *lower,
-                      double from, double to, uint32_t top, uint32_t rows, overlap *column)
-{
-    circle_piece above = cut_circle(upper, from, to), below = cut_circle(lower, from, to);
-    for (uint32_t i = 0; i < rows; i++) {
-        double high = geometry->borders[top + i], low = geometry->borders[top + i + 1];
-        column[i].weight += (float)fmax(0.0, area_below(&above, low, high) - area_below(&below, low, high));
-    }
-}
+/* Where a texel lies. */
+typedef struct texel_outline {
+    double highest, lowest; /* sines of latitude */
+    stop stops[MAX_STOPS];  /* by position */
+    int stop_count;
+    const great_circle *upper[MAX_STOPS], *lower[MAX_STOPS]; /* edges from each stop to the next; NULL: the pole */
+    uint32_t row;                                            /* of the map, one that is near; follows the texels */
+} texel_outline;
 
-/* Turns areas into shares of the texel and leaves out what does not overlap. */
-static uint32_t compact(overlap *column, uint32_t rows, double solid_angle)
-{
-    uint32_t kept = 0;
-    for (uint32_t i = 0; i < rows; i++) {
-        double area = (double)column[i].weight;
-        if (area < LEAST_AREA)
-            continue;
-        column[kept] = column[i];
-        column[kept++].weight = (float)(area / solid_angle);
-    }
-    return kept;
-}
+/* The part of a texel that is between two meridians in one column of the map. */
+typedef struct piece {
+    uint32_t column;                    /* from the first one that is looked at */
+    double width;                       /* radians */
+    double highest, lowest;             /* sines of latitude that it reaches */
+    double inner_highest, inner_lowest; /* and between which it has its full width */
+    arc upper, lower;
+} piece;
 
-static uint32_t fill_outline(const overlap_geometry *geometry, const texel_outline *outline, bounding_circles circles,
-                             overlap *overlaps)
-{
-    int64_t first, last, width = geometry->map_width;
-    uint32_t top = find_row(geometry, outline->highest), rows = find_row(geometry, outline->lowest) - top + 1;
-    double solid_angle = cube_solid_angle(outline->u0, outline->u1, outline->v0, outline->v1);
-    uint32_t count = 0;
-    find_columns(geometry, outline, &first, &last);
-    for (int64_t c = first; c <= last; c++) {
-        overlap *column = overlaps + count;
-        for (uint32_t i = 0; i < rows; i++)
-            column[i] = (overlap){top + i, (uint32_t)((c + width) % width), 0.0f};
-        for (int s = 0; s + 1 < outline->stop_count; s++) {
-            double from = fmax(outline->stops[s], longitude_of(geometry, (double)(c + 1)));
-            double to = fmin(outline->stops[s + 1], longitude_of(geometry, (double)c));
-            if (!(from < to))
-                continue;
-            great_circle upper, lower;
-            circles(outline, 0.5 * (from + to), &upper, &lower);
-            add_piece(geometry, &upper, &lower, from, to, top, rows, column);
-        }
-        count += compact(column, rows, solid_angle);
-    }
-    return count;
-}
+typedef struct piece_list {
+    int piece_count, point_count;
+    piece pieces[OVERLAP_RUN_LIMIT + MAX_STOPS];
+    circle_point upper[OVERLAP_RUN_LIMIT + 2 * MAX_STOPS], lower[OVERLAP_RUN_LIMIT + 2 * MAX_STOPS];
+} piece_list;
 
-static void add_stop(texel_outline *outline, double longitude)
+static void add_stop(texel_outline *outline, stop new_stop)
 {
-    if (!(longitude > outline->from && longitude < outline->to))
-        return;
     int i = outline->stop_count++;
-    for (; i > 0 && outline->stops[i - 1] > longitude; i--)
+    for (; i > 0 && outline->stops[i - 1].position > new_stop.position; i--)
         outline->stops[i] = outline->stops[i - 1];
-    outline->stops[i] = longitude;
+    outline->stops[i] = new_stop;
 }
 
-static void set_range(texel_outline *outline, double from, double to)
+/* Signs do not matter here, see meet_meridian(). */
+static stop column_border(const overlap_geometry *geometry, uint32_t column)
 {
-    outline->from = from;
-    outline->to = to;
-    outline->stops[0] = from;
-    outline->stops[1] = to;
-    outline->stop_count = 2;
+    uint32_t half = geometry->map_width / 2, quarter = half / 2, place = column;
+    while (place >= half)
+        place -= half;
+    place = place > quarter ? half - place : place;
+    return (stop){column, {geometry->column_sines[quarter - place], geometry->column_sines[place]}};
 }
 
-static texel_outline outline_texel(const overlap_geometry *geometry, uint32_t row, uint32_t column)
+static circle_point meet(const great_circle *circle, angle meridian)
 {
-    return (texel_outline){
-        .u0 = texel_border(column, geometry->size),
-        .u1 = texel_border(column + 1, geometry->size),
-        .v0 = texel_border(row, geometry->size),
-        .v1 = texel_border(row + 1, geometry->size),
-    };
+    return circle != NULL ? meet_meridian(circle, meridian) : (circle_point){.sine = 1.0};
+}
+
+/* Adds the points where two edges meet a meridian. */
+static void add_points(const great_circle *upper, const great_circle *lower, angle meridian, piece_list *list)
+{
+    list->upper[list->point_count] = meet(upper, meridian);
+    list->lower[list->point_count++] = meet(lower, meridian);
+}
+
+/* Adds the piece between the last two points. */
+static void add_piece(const great_circle *upper, const great_circle *lower, uint32_t column, double width,
+                      piece_list *list)
+{
+    int i = list->point_count - 2;
+    piece *p = &list->pieces[list->piece_count++];
+    p->column = column;
+    p->width = width;
+    p->upper = arc_cut(upper, &list->upper[i], &list->upper[i + 1]);
+    p->lower = arc_cut(lower, &list->lower[i], &list->lower[i + 1]);
+    p->highest = arc_highest(&p->upper);
+    p->inner_highest = arc_lowest(&p->upper);
+    p->inner_lowest = arc_highest(&p->lower);
+    p->lowest = arc_lowest(&p->lower);
+}
+
+/* Cuts what the outline has in the columns first ... end - 1 into pieces. */
+static void cut_pieces(const overlap_geometry *geometry, const texel_outline *outline, uint32_t first, uint32_t end,
+                       piece_list *list)
+{
+    double column_width = 2 * PI / geometry->map_width;
+    stop from = outline->stops[0].position < first ? column_border(geometry, first) : outline->stops[0];
+    list->piece_count = list->point_count = 0;
+    for (int s = 0; s + 1 < outline->stop_count && from.position < end; s++) {
+        const stop *last = &outline->stops[s + 1];
+        if (last->position <= from.position)
+            continue;
+        add_points(outline->upper[s], outline->lower[s], from.longitude, list);
+        while (from.position < end && from.position < last->position) {
+            uint32_t column = (uint32_t)from.position;
+            stop to = last->position < column + 1.0 ? *last : column_border(geometry, column + 1);
+            add_points(outline->upper[s], outline->lower[s], to.longitude, list);
+            add_piece(outline->upper[s], outline->lower[s], column - first,
+                      (to.position - from.position) * column_width, list);
+            from = to;
+        }
+    }
+}
+
+/* Area, sr, of the part of a piece that lies in a row of the map; at least LEAST_AREA where they meet. */
+static double area_in_row(const piece *p, const band *row, bool only_count)
+{
+    double height = lesser(row->top, p->highest) - greater(row->bottom, p->lowest);
+    if (height * p->width <= LEAST_AREA)
+        return 0.0;
+    if (only_count || (row->top <= p->inner_highest && row->bottom >= p->inner_lowest))
+        return height * p->width;
+    return greater(LEAST_AREA, arc_area_below(&p->upper, row, p->width) - arc_area_below(&p->lower, row, p->width));
+}
+
+static void write_rows(const overlap_geometry *geometry, const texel_outline *outline, const piece_list *list,
+                       overlap_run begin, uint32_t columns, overlap_writer *writer)
+{
+    for (uint32_t row = outline->row; geometry->borders[row] > outline->lowest; row++) {
+        band b = {geometry->borders[row], geometry->borders[row + 1], geometry->cosines[row],
+                  geometry->cosines[row + 1]};
+        double areas[OVERLAP_RUN_LIMIT];
+        for (uint32_t i = 0; i < columns; i++)
+            areas[i] = 0.0;
+        for (const piece *p = list->pieces; p < list->pieces + list->piece_count; p++)
+            areas[p->column] += area_in_row(p, &b, writer->runs == NULL);
+        begin.row = (uint16_t)row;
+        overlap_write(writer, begin, areas, columns);
+    }
+}
+
+/* The place of a column, counted on from 0 across the map's edge. */
+static overlap_run begin_run(const overlap_geometry *geometry, uint32_t column)
+{
+    uint32_t quarter = geometry->map_width / 4;
+    return (overlap_run){.column = column % quarter, .quarter = column / quarter % 4};
+}
+
+/* The end of the columns that can be taken at once: not too many, and not across a quarter of the map. */
+static uint32_t find_end(const overlap_geometry *geometry, uint32_t first, double last)
+{
+    uint32_t quarter = geometry->map_width / 4, end = (first / quarter + 1) * quarter;
+    end = end < last ? end : (uint32_t)ceil(last);
+    return end - first > OVERLAP_RUN_LIMIT ? first + OVERLAP_RUN_LIMIT : end;
+}
+
+static void write_outline(const overlap_geometry *geometry, texel_outline *outline, overlap_writer *writer)
+{
+    piece_list list;
+    double last = outline->stops[outline->stop_count - 1].position;
+    uint32_t first = (uint32_t)outline->stops[0].position;
+    uint32_t row = outline->row = find_row(geometry, outline->highest, outline->row);
+    if (last <= first + 1.0 && geometry->borders[row + 1] <= outline->lowest) { /* all in one pixel */
+        overlap_run begin = begin_run(geometry, first);
+        begin.row = (uint16_t)row;
+        overlap_write(writer, begin, &(double){1.0}, 1);
+        overlap_end_texel(writer);
+        return;
+    }
+    for (uint32_t end; first < last; first = end) {
+        end = find_end(geometry, first, last);
+        cut_pieces(geometry, outline, first, end, &list);
+        write_rows(geometry, outline, &list, begin_run(geometry, first), end - first, writer);
+    }
+    overlap_end_texel(writer);
 }
 
 /* ---- the face +Z: two edges are meridians, the others circles whose highest point is on the face's axis ---- */
 
-static texel_outline outline_side(const overlap_geometry *geometry, uint32_t row, uint32_t column)
+static stop side_stop(const overlap_geometry *geometry, double u)
 {
-    texel_outline outline = outline_texel(geometry, row, column);
-    double nearest = outline.u0 > 0 ? outline.u0 : outline.u1 < 0 ? -outline.u1 : 0.0;
-    double farthest = fmax(fabs(outline.u0), fabs(outline.u1));
-    double top = outline.v0 < 0 ? nearest : farthest, bottom = outline.v1 > 0 ? nearest : farthest;
-    outline.highest = -outline.v0 / sqrt(1.0 + top * top + outline.v0 * outline.v0);
-    outline.lowest = -outline.v1 / sqrt(1.0 + bottom * bottom + outline.v1 * outline.v1);
-    set_range(&outline, atan(outline.u0), atan(outline.u1));
-    add_stop(&outline, 0.0);
-    return outline;
+    double scale_by = 1.0 / sqrt(1.0 + u * u);
+    return (stop){geometry->map_width * (0.5 - atan(u) / (2 * PI)), {scale_by, u * scale_by}};
 }
 
 static great_circle side_circle(double v)
 {
-    return (great_circle){fabs(v) / sqrt(1.0 + v * v), 0.0, v < 0 ? 1.0 : -1.0};
+    double scale_by = 1.0 / sqrt(1.0 + v * v);
+    return (great_circle){.height = fabs(v) * scale_by, .depth = scale_by, .south = v > 0};
 }
 
-static void side_circles(const texel_outline *outline, double longitude, great_circle *upper, great_circle *lower)
+void overlap_side(const overlap_geometry *geometry, uint32_t row, uint32_t first_column, uint32_t end_column,
+                  overlap_writer *writer)
 {
-    (void)longitude;
-    *upper = side_circle(outline->v0);
-    *lower = side_circle(outline->v1);
-}
-
-size_t overlap_side_bound(const overlap_geometry *geometry, uint32_t row, uint32_t column)
-{
-    texel_outline outline = outline_side(geometry, row, column);
-    return outline_bound(geometry, &outline);
-}
-
-uint32_t overlap_side(const overlap_geometry *geometry, uint32_t row, uint32_t column, overlap *overlaps)
-{
-    texel_outline outline = outline_side(geometry, row, column);
-    return fill_outline(geometry, &outline, side_circles, overlaps);
-}
-
-/* ---- the face +Y: u is x, v is z, and longitude is atan2(x, z) ---- */
-
-/* Longitude of a point, as near as can be to another. */
-static double longitude_near(double x, double z, double reference)
-{
-    double longitude = atan2(x, z);
-    return longitude - 2 * PI * round((longitude - reference) / (2 * PI));
-}
-
-static bool holds_pole(const texel_outline *o)
-{
-    return o->u0 < 0 && o->u1 > 0 && o->v0 < 0 && o->v1 > 0;
-}
-
-/* Longitudes from corner to corner; a corner that is the pole itself has none. */
-static void set_pole_range(texel_outline *o, const double corners[4][2])
-{
-    if (holds_pole(o)) {
-        set_range(o, -PI, PI);
-        return;
+    double v0 = texel_border(row, geometry->size), v1 = texel_border(row + 1, geometry->size);
+    const great_circle upper = side_circle(v0), lower = side_circle(v1);
+    texel_outline outline = {.upper = {&upper, &upper}, .lower = {&lower, &lower}};
+    stop left = side_stop(geometry, texel_border(first_column, geometry->size));
+    for (uint32_t column = first_column; column < end_column; column++) {
+        double u0 = texel_border(column, geometry->size), u1 = texel_border(column + 1, geometry->size);
+        double nearest = u1 < 0 ? u1 : 0.0, farthest = greater(fabs(u0), fabs(u1));
+        double bottom = v1 > 0 ? nearest : farthest;
+        stop right = side_stop(geometry, u1);
+        outline.highest = -v0 / sqrt(1.0 + nearest * nearest + v0 * v0);
+        outline.lowest = -v1 / sqrt(1.0 + bottom * bottom + v1 * v1);
+        outline.stop_count = 0;
+        add_stop(&outline, right);
+        add_stop(&outline, left);
+        if (u1 > 0)
+            add_stop(&outline, side_stop(geometry, 0.0));
+        write_outline(geometry, &outline, writer);
+        left = right;
     }
-    double middle = atan2(o->u0 + o->u1, o->v0 + o->v1), from = middle, to = middle;
-    for (int i = 0; i < 4; i++) {
-        if (corners[i][0] == 0 && corners[i][1] == 0)
-            continue;
-        double longitude = longitude_near(corners[i][0], corners[i][1], middle);
-        from = fmin(from, longitude);
-        to = fmax(to, longitude);
+}
+
+/* ---- the face +Y: u is x, v is z, and longitude is atan2(x, z); this quarter's positions start at width / 2 ---- */
+
+typedef struct pole_texel {
+    double x[2], z[2];
+    great_circle x_edges[2], z_edges[2];
+    stop corners[2][2]; /* [x][z]; without meaning at the pole */
+} pole_texel;
+
+static great_circle pole_circle(double offset, bool highest_at_x)
+{
+    double scale_by = 1.0 / sqrt(1.0 + offset * offset);
+    return (great_circle){.height = scale_by, .depth = fabs(offset) * scale_by, .highest_at_x = highest_at_x};
+}
+
+static stop pole_stop(const overlap_geometry *geometry, double x, double z)
+{
+    double position = geometry->map_width * (0.5 - atan2(x, z) / (2 * PI)), scale_by = 1.0 / sqrt(x * x + z * z);
+    position += position < geometry->map_width / 2 ? geometry->map_width : 0;
+    return (stop){position, {z * scale_by, x * scale_by}};
+}
+
+static bool holds_pole(const pole_texel *texel)
+{
+    return texel->x[1] > 0 && texel->z[1] > 0;
+}
+
+static void add_pole_stops(const overlap_geometry *geometry, const pole_texel *texel, texel_outline *outline)
+{
+    static const angle axes[5] = {{1, 0}, {0, -1}, {-1, 0}, {0, 1}, {1, 0}}; /* +Z, -X, -Z, +X, +Z */
+    outline->stop_count = 0;
+    for (int i = 0; i < 4; i++)
+        if (texel->x[i / 2] != 0 || texel->z[i % 2] != 0)
+            add_stop(outline, texel->corners[i / 2][i % 2]);
+    double first = outline->stops[0].position, last = outline->stops[outline->stop_count - 1].position;
+    for (uint32_t i = 0; i < 5; i++) {
+        double position = (2.0 + i) * (geometry->map_width / 4);
+        if (holds_pole(texel) || (position > first && position < last))
+            add_stop(outline, (stop){position, axes[i]});
     }
-    set_range(o, from, to);
 }
 
-static texel_outline outline_pole(const overlap_geometry *geometry, uint32_t row, uint32_t column)
+/* The edges where rays from the pole enter and leave the texel between two stops. */
+static void find_edges(const pole_texel *texel, texel_outline *outline, int s)
 {
-    texel_outline o = outline_texel(geometry, row, column);
-    const double corners[4][2] = {{o.u0, o.v0}, {o.u0, o.v1}, {o.u1, o.v0}, {o.u1, o.v1}};
-    set_pole_range(&o, corners);
-    double middle = 0.5 * (o.from + o.to), farthest = 0;
-    for (int i = 0; i < 4; i++) {
-        add_stop(&o, longitude_near(corners[i][0], corners[i][1], middle));
-        add_stop(&o, longitude_near(i == 0 ? 1 : i == 1 ? -1 : 0, i == 2 ? 1 : i == 3 ? -1 : 0, middle));
-        farthest = fmax(farthest, corners[i][0] * corners[i][0] + corners[i][1] * corners[i][1]);
+    angle from = outline->stops[s].longitude, to = outline->stops[s + 1].longitude;
+    double x = from.sine + to.sine, z = from.cosine + to.cosine;
+    int x_near = x < 0, z_near = z < 0;
+    double enter_x = texel->x[x_near] / x, enter_z = texel->z[z_near] / z;
+    double leave_x = texel->x[!x_near] / x, leave_z = texel->z[!z_near] / z;
+    bool starts_inside = !(enter_x > 0 || enter_z > 0);
+    outline->upper[s] = starts_inside ? NULL : enter_x > enter_z ? &texel->x_edges[x_near] : &texel->z_edges[z_near];
+    outline->lower[s] = leave_x < leave_z ? &texel->x_edges[!x_near] : &texel->z_edges[!z_near];
+}
+
+static void write_pole_texel(const overlap_geometry *geometry, const pole_texel *texel, texel_outline *outline,
+                             overlap_writer *writer)
+{
+    double x = lesser(0.0, texel->x[1]), z = lesser(0.0, texel->z[1]); /* nearest to the pole; the farthest is [0][0] */
+    outline->highest = 1.0 / sqrt(1.0 + x * x + z * z);
+    outline->lowest = 1.0 / sqrt(1.0 + texel->x[0] * texel->x[0] + texel->z[0] * texel->z[0]);
+    add_pole_stops(geometry, texel, outline);
+    for (int s = 0; s + 1 < outline->stop_count; s++)
+        find_edges(texel, outline, s);
+    write_outline(geometry, outline, writer);
+}
+
+void overlap_pole(const overlap_geometry *geometry, uint32_t row, uint32_t first_column, uint32_t end_column,
+                  overlap_writer *writer)
+{
+    texel_outline outline = {0};
+    pole_texel texel = {.z = {texel_border(row, geometry->size), texel_border(row + 1, geometry->size)}};
+    for (int i = 0; i < 2; i++)
+        texel.z_edges[i] = pole_circle(texel.z[i], false);
+    for (uint32_t border = first_column; border <= end_column; border++) {
+        texel.x[0] = texel.x[1];
+        texel.x_edges[0] = texel.x_edges[1];
+        texel.x[1] = texel_border(border, geometry->size);
+        texel.x_edges[1] = pole_circle(texel.x[1], true);
+        for (int i = 0; i < 2; i++) {
+            texel.corners[0][i] = texel.corners[1][i];
+            texel.corners[1][i] = pole_stop(geometry, texel.x[1], texel.z[i]);
+        }
+        if (border > first_column)
+            write_pole_texel(geometry, &texel, &outline, writer);
     }
-    double x = fmin(fmax(0.0, o.u0), o.u1), z = fmin(fmax(0.0, o.v0), o.v1);
-    o.highest = 1.0 / sqrt(1.0 + x * x + z * z);
-    o.lowest = 1.0 / sqrt(1.0 + farthest);
-    return o;
-}
-
-/* The circle of an edge x = offset (across_z false) or z = offset (true). */
-static great_circle pole_circle(double offset, bool across_z)
-{
-    double quarter = across_z ? 0.0 : 0.5 * PI;
-    return (great_circle){1.0 / sqrt(1.0 + offset * offset), offset < 0 ? quarter - PI : quarter, 1.0};
-}
-
-/* Moves the circle's highest point by whole turns, next to the longitude that is asked about. */
-static great_circle turn_near(great_circle circle, double longitude)
-{
-    circle.longitude -= 2 * PI * round((circle.longitude - longitude) / (2 * PI));
-    return circle;
-}
-
-/* Where a ray from the pole enters and leaves the rectangle: the edges there. */
-static void pole_circles(const texel_outline *o, double longitude, great_circle *upper, great_circle *lower)
-{
-    double x = sin(longitude), z = cos(longitude);
-    double x_near = x > 0 ? o->u0 : o->u1, x_far = x > 0 ? o->u1 : o->u0;
-    double z_near = z > 0 ? o->v0 : o->v1, z_far = z > 0 ? o->v1 : o->v0;
-    double enter_x = x_near / x, enter_z = z_near / z, leave_x = x_far / x, leave_z = z_far / z;
-    great_circle inner = enter_x > enter_z ? pole_circle(x_near, false) : pole_circle(z_near, true);
-    if (!(fmax(enter_x, enter_z) >
-          0)) /* the ray starts inside: the pole, a circle of height 1 on either side of its top */
-        inner = (great_circle){1.0, longitude - 0.25 * PI, 1.0};
-    *upper = turn_near(inner, longitude);
-    *lower = turn_near(leave_x < leave_z ? pole_circle(x_far, false) : pole_circle(z_far, true), longitude);
-}
-
-size_t overlap_pole_bound(const overlap_geometry *geometry, uint32_t row, uint32_t column)
-{
-    texel_outline outline = outline_pole(geometry, row, column);
-    return outline_bound(geometry, &outline);
-}
-
-uint32_t overlap_pole(const overlap_geometry *geometry, uint32_t row, uint32_t column, overlap *overlaps)
-{
-    texel_outline outline = outline_pole(geometry, row, column);
-    return fill_outline(geometry, &outline, pole_circles, overlaps);
 }

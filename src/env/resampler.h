@@ -12,7 +12,17 @@ helio_status resampler_create(helio_context *context, helio_layout layout, uint3
                               uint32_t cube_size, resampler **out);
 void resampler_destroy(helio_context *context, resampler *resampler);
 
-/* map: [height][width][3], finite and >= 0. cube: [6][R][R][3]. Takes no memory. */
-void resampler_run(helio_context *context, const resampler *resampler, const float *map, float *cube);
+/* How the pixels of a row of the map are read; the results are those of pixel_clean() in any case. */
+typedef enum row_reading {
+    ROW_AS_IT_IS,
+    ROW_CLAMPED,  /* negative channels as 0 */
+    ROW_BY_PIXEL, /* one by one, each through pixel_clean() */
+} row_reading;
+
+/* map: [height][width][3]. readings: [height], row_reading of each row; ROW_BY_PIXEL for those with NaN or infinite
+ * channels, and for the last one, behind which nothing may be read. cube: [6][R][R][3], finite and >= 0. Takes no
+ * memory. */
+void resampler_run(helio_context *context, const resampler *resampler, const float *map, const uint8_t *readings,
+                   float *cube);
 
 #endif

@@ -7,6 +7,10 @@
 
 #include <openexr.h>
 
+/* HELIO_ERR_DATA if an attribute claims more bytes than the file has left: the C++ side of the library would take
+ * memory for them first. What the attributes hold is left to the library. */
+helio_status exr_head_check(const image_file *file);
+
 /* The part of the file that is read, and its channels. */
 typedef struct exr_channels {
     int part;
@@ -39,6 +43,6 @@ helio_status exr_rgba_read(const image_file *file, const exr_channels *channels,
 /* Brings image from the data window to the display window: black outside, cropped where it is larger. Windows that
  * make no sense together are left alone with a warning. */
 helio_status exr_window_fit(const image_file *file, exr_attr_box2i_t data, exr_attr_box2i_t display,
-                            helio_image **image);
+                            helio_image *image);
 
 #endif

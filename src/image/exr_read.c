@@ -5,8 +5,14 @@
 #include "core/error.h"
 #include "image/colour.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
+
+enum {
+    BYTES_PER_PIXEL = 28,   /* what any picture may take while it is read, see image.c */
+    MODEST_PIXELS = 1 << 24 /* what chunks of fewer pixels than these need is always granted */
+};
 
 typedef struct exr_reader {
     const image_file *file;
@@ -99,13 +105,49 @@ static uint64_t greatest_ratio(exr_compression_t compression)
 static uint64_t stored_bytes(const exr_attr_chlist_t *list, uint64_t width, uint64_t height)
 {
     uint64_t bytes = 0;
-    for (int i = 0; i < list->num_channels; i++) {
+    for (int i = 0; i < list->num_channels && bytes < UINT64_C(1) << 60; i++) {
         const exr_attr_chlist_entry_t *entry = &list->entries[i];
         uint64_t x = entry->x_sampling > 0 ? (uint64_t)entry->x_sampling : 1;
         uint64_t y = entry->y_sampling > 0 ? (uint64_t)entry->y_sampling : 1;
         bytes += (width / x) * (height / y) * (entry->pixel_type == EXR_PIXEL_HALF ? 2 : 4);
     }
     return bytes;
+}
+
+/* Of the pixels that are decoded at once. */
+static exr_result_t find_chunk_size(const exr_reader *reader, uint64_t *width, uint64_t *height)
+{
+    exr_storage_t storage;
+    int32_t tile_width = 0, lines = 0;
+    exr_result_t result = exr_get_storage(reader->library, reader->channels.part, &storage);
+    if (result == EXR_ERR_SUCCESS && storage == EXR_STORAGE_TILED)
+        result = exr_get_tile_sizes(reader->library, reader->channels.part, 0, 0, &tile_width, &lines);
+    else if (result == EXR_ERR_SUCCESS)
+        result = exr_get_scanlines_per_chunk(reader->library, reader->channels.part, &lines);
+    if (tile_width > 0 && (uint64_t)tile_width < *width)
+        *width = (uint64_t)tile_width;
+    if (lines > 0 && (uint64_t)lines < *height)
+        *height = (uint64_t)lines;
+    return result;
+}
+
+/* A chunk is in memory up to three times while it is decoded: packed, unpacked, and on the way. Files whose chunks are
+ * the whole picture, or have hundreds of channels, would need far more than the pixels that are wanted. */
+static helio_status check_chunk(exr_reader *reader, const exr_attr_chlist_t *list, uint64_t width, uint64_t height)
+{
+    uint64_t chunk_width = width, chunk_height = height;
+    exr_result_t result = find_chunk_size(reader, &chunk_width, &chunk_height);
+    if (result != EXR_ERR_SUCCESS)
+        return fail_with(reader, result);
+    uint64_t bytes = 3 * stored_bytes(list, chunk_width, chunk_height) + 16 * width * height;
+    uint64_t allowed = reader->file->max_pixels > MODEST_PIXELS ? reader->file->max_pixels : MODEST_PIXELS;
+    if (bytes / BYTES_PER_PIXEL <= allowed)
+        return HELIO_OK;
+    return fail(HELIO_ERR_DATA,
+                "%s needs %" PRIu64 " MiB to be decoded, as much as a picture of more than the %" PRIu64
+                " pixels that are allowed; save it in scan lines with R, G and B alone, or raise max_pixels "
+                "(--max-pixels)",
+                reader->file->path, bytes >> 20, reader->file->max_pixels);
 }
 
 static helio_status create_image(exr_reader *reader)
@@ -126,6 +168,7 @@ static helio_status create_image(exr_reader *reader)
     uint64_t width = (uint64_t)((int64_t)window->max.x - window->min.x + 1);
     uint64_t height = (uint64_t)((int64_t)window->max.y - window->min.y + 1);
     HELIO_TRY(image_check_size(reader->file, width, height, 0)); /* before sums that could overflow */
+    HELIO_TRY(check_chunk(reader, list, width, height));
     uint64_t least_bytes = stored_bytes(list, width, height) / greatest_ratio(compression);
     return image_create(reader->file, width, height, reader->channels.names[3] != NULL, least_bytes, &reader->image);
 }
@@ -245,13 +288,16 @@ static helio_status fit_window(exr_reader *reader)
     exr_attr_box2i_t display;
     if (exr_get_display_window(reader->library, reader->channels.part, &display) != EXR_ERR_SUCCESS)
         return HELIO_OK;
-    return exr_window_fit(reader->file, reader->window, display, &reader->image);
+    return exr_window_fit(reader->file, reader->window, display, reader->image);
 }
 
 static helio_status read_image(exr_reader *reader)
 {
+    HELIO_TRY(exr_head_check(reader->file));
     HELIO_TRY(open_file(reader));
     HELIO_TRY(exr_channels_find(reader->file, reader->library, &reader->channels));
+    if (reader->file->without_alpha)
+        reader->channels.names[3] = NULL;
     HELIO_TRY(create_image(reader));
     HELIO_TRY(read_pixels(reader));
     HELIO_TRY(fit_window(reader));

@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <pthread.h>
+#include <stdio.h>
 #include <string.h>
 
 #include <ImfCRgbaFile.h>
@@ -29,6 +30,15 @@ static bool read_half(ImfInputFile *input, exr_attr_box2i_t window, size_t width
     return ImfInputSetFrameBuffer(input, origin, 1, width) && ImfInputReadPixels(input, window.min.y, window.max.y);
 }
 
+/* The library's words may hold words of the file. The caller holds the mutex. */
+static helio_status fail_with_library(const image_file *file)
+{
+    char reason[512];
+    snprintf(reason, sizeof reason, "%s", ImfErrorMessage());
+    image_make_printable(reason);
+    return fail(HELIO_ERR_DATA, "%s cannot be read as OpenEXR: %s", file->path, reason);
+}
+
 static helio_status read_file(const image_file *file, exr_attr_box2i_t window, size_t width, ImfRgba *pixels)
 {
     pthread_mutex_lock(&message_mutex);
@@ -37,9 +47,9 @@ static helio_status read_file(const image_file *file, exr_attr_box2i_t window, s
     bool good = same && read_half(input, window, width, pixels);
     helio_status status = HELIO_OK;
     if (input != NULL && !same)
-        status = fail(HELIO_ERR_IO, "%s was changed while it was read", file->path);
+        status = fail(HELIO_ERR_DATA, "%s has two data windows, or was changed while it was read", file->path);
     else if (!good)
-        status = fail(HELIO_ERR_DATA, "%s cannot be read as OpenEXR: %s", file->path, ImfErrorMessage());
+        status = fail_with_library(file);
     if (input != NULL)
         ImfCloseInputFile(input);
     pthread_mutex_unlock(&message_mutex);

@@ -2,6 +2,7 @@
 #include "image/exr.h"
 
 #include "core/context.h"
+#include "core/error.h"
 
 #include <string.h>
 
@@ -28,36 +29,40 @@ static bool is_sensible(const image_file *file, int64_t width, int64_t height, c
     return pixels <= file->max_pixels && pixels <= GROWTH_LIMIT * data_pixels;
 }
 
-static void copy(const helio_image *from, helio_image *to, span columns, span rows)
+/* Replaces one array by a black one of the display window's size, and copies what both have. */
+static helio_status fit_array(const image_file *file, float **array, size_t channels, uint32_t old_width,
+                              const helio_image *fitted, span columns, span rows)
 {
+    size_t pixels = (size_t)fitted->width * fitted->height;
+    float *to = context_allocate(file->context, pixels, channels * sizeof *to);
+    if (to == NULL)
+        return fail(HELIO_ERR_MEMORY, "no memory for the %u x %u pixels of %s", fitted->width, fitted->height,
+                    file->path);
     for (int64_t row = 0; row < rows.length; row++) {
-        size_t source = (size_t)(rows.data + row) * from->width + (size_t)columns.data;
-        size_t target = (size_t)(rows.display + row) * to->width + (size_t)columns.display;
-        memcpy(to->rgb + 3 * target, from->rgb + 3 * source, 3 * sizeof(float) * (size_t)columns.length);
-        if (from->alpha != NULL)
-            memcpy(to->alpha + target, from->alpha + source, sizeof(float) * (size_t)columns.length);
+        size_t source = (size_t)(rows.data + row) * old_width + (size_t)columns.data;
+        size_t target = (size_t)(rows.display + row) * fitted->width + (size_t)columns.display;
+        memcpy(to + channels * target, *array + channels * source, channels * sizeof(float) * (size_t)columns.length);
     }
+    context_release(file->context, *array);
+    *array = to;
+    return HELIO_OK;
 }
 
-helio_status exr_window_fit(const image_file *file, exr_attr_box2i_t data, exr_attr_box2i_t display,
-                            helio_image **image)
+helio_status exr_window_fit(const image_file *file, exr_attr_box2i_t data, exr_attr_box2i_t display, helio_image *image)
 {
     int64_t width = (int64_t)display.max.x - display.min.x + 1, height = (int64_t)display.max.y - display.min.y + 1;
     span columns = overlap(data.min.x, data.max.x, display.min.x, display.max.x);
     span rows = overlap(data.min.y, data.max.y, display.min.y, display.max.y);
-    if (columns.length == width && rows.length == height && width == (*image)->width && height == (*image)->height)
+    if (columns.length == width && rows.length == height && width == image->width && height == image->height)
         return HELIO_OK;
-    if (!is_sensible(file, width, height, *image) || columns.length < 1 || rows.length < 1) {
+    if (!is_sensible(file, width, height, image) || columns.length < 1 || rows.length < 1) {
         context_log(file->context, HELIO_LOG_WARNING,
                     "%s: the display window does not fit the data window and is ignored", file->path);
         return HELIO_OK;
     }
-    helio_image *fitted;
-    helio_status status = image_create(file, (uint64_t)width, (uint64_t)height, (*image)->alpha != NULL, 0, &fitted);
-    if (status != HELIO_OK)
-        return status;
-    copy(*image, fitted, columns, rows);
-    helio_image_destroy(file->context, *image);
-    *image = fitted;
-    return HELIO_OK;
+    uint32_t old_width = image->width;
+    image->width = (uint32_t)width;
+    image->height = (uint32_t)height;
+    HELIO_TRY(fit_array(file, &image->rgb, 3, old_width, image, columns, rows));
+    return image->alpha == NULL ? HELIO_OK : fit_array(file, &image->alpha, 1, old_width, image, columns, rows);
 }

@@ -10,8 +10,12 @@
 #include <inttypes.h>
 #include <string.h>
 
-#define FILE_SIZE_LIMIT (UINT64_C(4) << 30)    /* bytes */
-#define DEFAULT_MAX_PIXELS (UINT64_C(1) << 28) /* 3 GiB of RGB */
+#define FILE_SIZE_LIMIT (UINT64_C(4) << 30) /* bytes */
+
+/* Pixels that any file may have unasked: reading takes up to 28 bytes for each, an environment with its map 24, which
+ * stays below 2 GiB. Files that are as large themselves are believed, as 16384 x 8192 maps are in use. */
+#define MODEST_PIXELS (UINT64_C(1) << 26)
+#define MOST_PIXELS (UINT64_C(1) << 28)
 
 typedef struct image_kind {
     const char *name;
@@ -58,12 +62,17 @@ helio_status image_decode(const image_file *file, helio_image **image)
     if (kind == NULL)
         return fail(HELIO_ERR_DATA,
                     "%s is not a picture that can be read; give OpenEXR, Radiance HDR, PFM, PNG or JPEG", file->path);
-    if (file->keep_encoding && !kind->encoded)
+    if (file->texels != NULL && !kind->encoded)
         return fail(HELIO_ERR_DATA, "%s is %s, which cannot be used here; give PNG or JPEG", file->path, kind->name);
     if (kind->read == NULL)
         return fail(HELIO_ERR_UNSUPPORTED, "%s is %s, which this build cannot read; build with it or convert the file",
                     file->path, kind->name);
     return kind->read(file, image);
+}
+
+static uint64_t default_max_pixels(uint64_t file_size)
+{
+    return file_size < MODEST_PIXELS ? MODEST_PIXELS : file_size < MOST_PIXELS ? file_size : MOST_PIXELS;
 }
 
 helio_status helio_image_read(helio_context *context, const char *path, const helio_image_read_desc *desc,
@@ -74,14 +83,12 @@ helio_status helio_image_read(helio_context *context, const char *path, const he
     *image = NULL;
     if (context == NULL || path == NULL)
         return fail(HELIO_ERR_ARGUMENT, "helio_image_read needs a context and a path");
-    image_file file = {.context = context, .path = path, .max_pixels = DEFAULT_MAX_PIXELS};
-    if (desc != NULL && desc->max_pixels != 0)
-        file.max_pixels = desc->max_pixels;
-
+    image_file file = {.context = context, .path = path, .without_alpha = desc != NULL && desc->without_alpha};
     const size_t limit = FILE_SIZE_LIMIT < SIZE_MAX / 2 ? (size_t)FILE_SIZE_LIMIT : SIZE_MAX / 2;
     unsigned char *bytes;
     HELIO_TRY(file_read(context, path, limit, &bytes, &file.size));
     file.bytes = bytes;
+    file.max_pixels = desc != NULL && desc->max_pixels != 0 ? desc->max_pixels : default_max_pixels(file.size);
     helio_status status = image_decode(&file, image);
     context_release(context, bytes);
     return status;
@@ -106,7 +113,8 @@ helio_status image_check_size(const image_file *file, uint64_t width, uint64_t h
                     file->path, width, height, max_edge);
     if (width * height > file->max_pixels)
         return fail(HELIO_ERR_DATA,
-                    "%s is too large: %" PRIu64 " x %" PRIu64 " pixels, where %" PRIu64 " in all are allowed",
+                    "%s is too large: %" PRIu64 " x %" PRIu64 " pixels, where %" PRIu64
+                    " in all are allowed; if you trust it, raise max_pixels (--max-pixels)",
                     file->path, width, height, file->max_pixels);
     if (file->size < least_bytes)
         return fail(HELIO_ERR_DATA,
@@ -116,20 +124,28 @@ helio_status image_check_size(const image_file *file, uint64_t width, uint64_t h
     return HELIO_OK;
 }
 
+static bool allocate_pixels(const image_file *file, helio_image *image, bool alpha)
+{
+    size_t pixels = (size_t)image->width * image->height;
+    if (file->texels != NULL)
+        return (*file->texels = context_allocate(file->context, pixels, 4)) != NULL;
+    image->rgb = context_allocate(file->context, pixels, 3 * sizeof *image->rgb);
+    bool wanted = alpha && !file->without_alpha;
+    if (wanted)
+        image->alpha = context_allocate(file->context, pixels, sizeof *image->alpha);
+    return image->rgb != NULL && (!wanted || image->alpha != NULL);
+}
+
 helio_status image_create(const image_file *file, uint64_t width, uint64_t height, bool alpha, uint64_t least_bytes,
                           helio_image **out)
 {
     HELIO_TRY(image_check_size(file, width, height, least_bytes));
-    size_t pixels = (size_t)(width * height);
     helio_image *image = context_allocate(file->context, 1, sizeof *image);
     if (image == NULL)
         return HELIO_ERR_MEMORY;
     image->width = (uint32_t)width;
     image->height = (uint32_t)height;
-    image->rgb = context_allocate(file->context, pixels, 3 * sizeof *image->rgb);
-    if (alpha)
-        image->alpha = context_allocate(file->context, pixels, sizeof *image->alpha);
-    if (image->rgb == NULL || (alpha && image->alpha == NULL)) {
+    if (!allocate_pixels(file, image, alpha)) {
         helio_image_destroy(file->context, image);
         return fail(HELIO_ERR_MEMORY, "no memory for the %" PRIu64 " x %" PRIu64 " pixels of %s", width, height,
                     file->path);

@@ -15,8 +15,12 @@ typedef struct image_file {
     const unsigned char *bytes;
     size_t size;
     uint64_t max_pixels;
-    uint32_t max_edge;  /* pixels each way; default: IMAGE_EDGE_LIMIT */
-    bool keep_encoding; /* only PNG and JPEG, and their values as they are stored, 0..1 but not linear */
+    uint32_t max_edge; /* pixels each way; default: IMAGE_EDGE_LIMIT */
+    bool without_alpha;
+
+    /* NULL for linear floats. Else only PNG and JPEG are read, and image_create() puts memory here: for RGBA of 8 bits
+     * each, as stored, in place of the picture's own arrays. Who gives it releases it, also after a failure. */
+    uint8_t **texels;
 } image_file;
 
 /* Reads the picture that the file holds; its first bytes tell the kind. */

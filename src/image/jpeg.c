@@ -12,8 +12,10 @@
 #include <jpeglib.h>
 
 enum {
-    PIXELS_PER_BYTE = 4096, /* a block of 64 pixels takes at least one bit, or a little less by arithmetic coding */
-    SCAN_LIMIT = 500,       /* real progressive files have about ten; thousands of empty ones only waste time */
+    LEAST_PIXELS = 1 << 16,  /* as which a scan counts at least */
+    PIXELS_PER_BYTE = 4096,  /* a block of 64 pixels takes at least one bit, or a little less by arithmetic coding */
+    USUAL_SCANS = 32,        /* real progressive files have about ten; hundreds of empty ones only waste time */
+    SCANNED_PIXELS = 1 << 28 /* what more scans than usual may go over, in all */
 };
 
 typedef struct jpeg_decoder {
@@ -51,9 +53,11 @@ static void on_message(j_common_ptr library, int level)
 static void on_progress(j_common_ptr library)
 {
     jpeg_decoder *decoder = library->client_data;
-    if (decoder->library.input_scan_number <= SCAN_LIMIT)
+    int scans = decoder->library.input_scan_number;
+    uint64_t pixels = (uint64_t)decoder->library.image_width * decoder->library.image_height;
+    if (scans <= USUAL_SCANS || (uint64_t)scans * (pixels + LEAST_PIXELS) <= SCANNED_PIXELS)
         return;
-    snprintf(decoder->message, sizeof decoder->message, "more than %d scans", SCAN_LIMIT);
+    snprintf(decoder->message, sizeof decoder->message, "it has more than %d scans", scans - 1);
     longjmp(decoder->failed, 1);
 }
 
@@ -74,20 +78,42 @@ static helio_status read_header(jpeg_decoder *decoder)
                         &decoder->image);
 }
 
+/* samples: 3 for RGB, 1 for grey, which becomes all three. */
+static void copy_row(const jpeg_decoder *decoder, size_t row, size_t samples)
+{
+    size_t width = decoder->image->width;
+    uint8_t *texel = *decoder->file->texels + 4 * row * width;
+    for (size_t column = 0; column < width; column++, texel += 4) {
+        texel[3] = 255;
+        for (size_t c = 0; c < 3; c++)
+            texel[c] = decoder->row[samples * column + (samples == 3 ? c : 0)];
+    }
+}
+
+static void convert_row(const jpeg_decoder *decoder, size_t row, size_t samples, const float linear[256])
+{
+    size_t width = decoder->image->width;
+    float *rgb = decoder->image->rgb + 3 * row * width;
+    for (size_t column = 0; column < width; column++)
+        for (size_t c = 0; c < 3; c++)
+            rgb[3 * column + c] = linear[decoder->row[samples * column + (samples == 3 ? c : 0)]];
+}
+
 static void read_rows(jpeg_decoder *decoder)
 {
     struct jpeg_decompress_struct *library = &decoder->library;
     float linear[256];
     for (int i = 0; i < 256; i++)
-        linear[i] = decoder->file->keep_encoding ? (float)i / 255 : srgb_decode((float)i / 255);
+        linear[i] = srgb_decode((float)i / 255);
     jpeg_start_decompress(library);
     size_t samples = (size_t)library->output_components;
     while (library->output_scanline < library->output_height) {
-        float *rgb = decoder->image->rgb + 3 * (size_t)library->output_scanline * decoder->image->width;
+        size_t row = library->output_scanline;
         jpeg_read_scanlines(library, &decoder->row, 1);
-        for (size_t column = 0; column < decoder->image->width; column++)
-            for (size_t c = 0; c < 3; c++)
-                rgb[3 * column + c] = linear[decoder->row[samples * column + (samples == 3 ? c : 0)]];
+        if (decoder->file->texels != NULL)
+            copy_row(decoder, row, samples);
+        else
+            convert_row(decoder, row, samples, linear);
     }
     jpeg_finish_decompress(library);
 }

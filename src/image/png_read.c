@@ -19,6 +19,7 @@ typedef struct png_decoder {
     const image_file *file;
     size_t position; /* in file->bytes */
     helio_image *image;
+    size_t channels; /* 3 or 4 */
     png_bytep rows;
     float *linear; /* what each sample value stands for */
 } png_decoder;
@@ -63,8 +64,30 @@ static helio_status read_header(png_decoder *decoder)
     uint64_t height = png_get_image_height(library, decoder->info);
     bool alpha = (png_get_color_type(library, decoder->info) & PNG_COLOR_MASK_ALPHA) != 0 ||
                  png_get_valid(library, decoder->info, PNG_INFO_tRNS) != 0;
+    decoder->channels = alpha ? 4 : 3;
     uint64_t stored_bytes = png_get_rowbytes(library, decoder->info) * height;
     return image_create(decoder->file, width, height, alpha, stored_bytes / DEFLATE_RATIO, &decoder->image);
+}
+
+static uint32_t read_length(const unsigned char *bytes)
+{
+    return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
+}
+
+/* The library takes memory for a chunk of text by the length that it claims, before it looks whether the file has so
+ * many bytes; and it may read on behind the end. */
+static helio_status check_chunks(const image_file *file)
+{
+    enum { SIGNATURE = 8, FRAME = 12 /* length, name and checksum */ };
+    for (size_t at = SIGNATURE; file->size - at >= FRAME;) {
+        size_t length = read_length(file->bytes + at);
+        if (length > file->size - at - FRAME)
+            break;
+        if (memcmp(file->bytes + at + 4, "IEND", 4) == 0)
+            return HELIO_OK;
+        at += FRAME + length;
+    }
+    return fail(HELIO_ERR_DATA, "%s cannot be read as PNG: the file is truncated or damaged", file->path);
 }
 
 static helio_status make_curve(png_decoder *decoder, unsigned depth)
@@ -73,17 +96,27 @@ static helio_status make_curve(png_decoder *decoder, unsigned depth)
     decoder->linear = context_allocate(decoder->file->context, count, sizeof *decoder->linear);
     if (decoder->linear == NULL)
         return HELIO_ERR_MEMORY;
-    for (size_t i = 0; i < count; i++) {
-        float encoded = (float)i / (float)(count - 1);
-        decoder->linear[i] = decoder->file->keep_encoding ? encoded : srgb_decode(encoded);
-    }
+    for (size_t i = 0; i < count; i++)
+        decoder->linear[i] = srgb_decode((float)i / (float)(count - 1));
     return HELIO_OK;
+}
+
+/* Of 16 bits the 8 that are nearest. */
+static void copy_row(png_decoder *decoder, uint32_t row, png_const_bytep bytes, unsigned depth)
+{
+    size_t width = decoder->image->width;
+    uint8_t *texel = *decoder->file->texels + 4 * row * width;
+    for (size_t column = 0; column < width; column++, texel += 4) {
+        texel[3] = 255;
+        for (size_t c = 0; c < decoder->channels; c++, bytes += depth / 8)
+            texel[c] = depth == 8 ? bytes[0] : (uint8_t)((((unsigned)bytes[0] << 8 | bytes[1]) + 128) / 257);
+    }
 }
 
 static void convert_row(png_decoder *decoder, uint32_t row, png_const_bytep bytes, unsigned depth)
 {
     helio_image *image = decoder->image;
-    size_t channels = image->alpha ? 4 : 3, first = (size_t)row * image->width;
+    size_t channels = decoder->channels, first = (size_t)row * image->width;
     for (size_t column = 0; column < image->width; column++) {
         unsigned samples[4] = {0};
         for (size_t c = 0; c < channels; c++, bytes += depth / 8)
@@ -93,6 +126,14 @@ static void convert_row(png_decoder *decoder, uint32_t row, png_const_bytep byte
         if (image->alpha)
             image->alpha[first + column] = (float)samples[3] / (float)((1u << depth) - 1);
     }
+}
+
+static void store_row(png_decoder *decoder, uint32_t row, png_const_bytep bytes, unsigned depth)
+{
+    if (decoder->file->texels != NULL)
+        copy_row(decoder, row, bytes, depth);
+    else
+        convert_row(decoder, row, bytes, depth);
 }
 
 /* Interlaced pictures come in seven passes over all rows, so that all must be kept; others need one row. */
@@ -105,9 +146,10 @@ static helio_status read_rows(png_decoder *decoder)
     size_t row_bytes = png_get_rowbytes(library, decoder->info), step = passes > 1 ? row_bytes : 0;
     unsigned depth = png_get_bit_depth(library, decoder->info);
     uint32_t height = decoder->image->height;
-    if (row_bytes != (size_t)decoder->image->width * (decoder->image->alpha ? 4 : 3) * depth / 8)
+    if (row_bytes != decoder->image->width * decoder->channels * depth / 8)
         return fail(HELIO_ERR_DATA, "%s has a colour type that cannot be read", decoder->file->path);
-    HELIO_TRY(make_curve(decoder, depth));
+    if (decoder->file->texels == NULL)
+        HELIO_TRY(make_curve(decoder, depth));
     decoder->rows = context_allocate(decoder->file->context, passes > 1 ? height : 1, row_bytes);
     if (decoder->rows == NULL)
         return HELIO_ERR_MEMORY;
@@ -115,7 +157,7 @@ static helio_status read_rows(png_decoder *decoder)
         for (uint32_t row = 0; row < height; row++) {
             png_read_row(library, decoder->rows + row * step, NULL);
             if (pass == passes - 1)
-                convert_row(decoder, row, decoder->rows + row * step, depth);
+                store_row(decoder, row, decoder->rows + row * step, depth);
         }
     png_read_end(library, NULL);
     return HELIO_OK;
@@ -132,6 +174,7 @@ static helio_status decode(png_decoder *decoder)
 
 helio_status png_read(const image_file *file, helio_image **image)
 {
+    HELIO_TRY(check_chunks(file));
     png_decoder decoder = {.file = file};
     decoder.library = png_create_read_struct(PNG_LIBPNG_VER_STRING, &decoder, on_error, on_warning);
     decoder.info = decoder.library ? png_create_info_struct(decoder.library) : NULL;

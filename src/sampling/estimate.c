@@ -5,14 +5,14 @@
  * counts m_k. */
 #include "sampling/estimate.h"
 
+#include "core/context.h"
 #include "core/error.h"
 #include "core/random.h"
-#include "sampling/brdf.h"
-#include "sampling/pools.h"
+#include "sampling/kernels.h"
 
 #include <string.h>
 
-enum { DEFAULT_SAMPLES = 64, BATCH = 64 };
+enum { DEFAULT_SAMPLES = 64 };
 static const float DEFAULT_BRDF_SHARE = 0.5f;
 
 /* Streams of random numbers of a point. */
@@ -51,29 +51,23 @@ helio_status estimate_resolve(const helio_pools *pools, const helio_estimate_des
     return HELIO_OK;
 }
 
-/* What is known about a point before its samples: all directions in the map's space. */
-typedef struct gathering {
-    const helio_pools *pools;
-    const helio_environment *environment;
-    brdf surface;  /* what reflects */
-    brdf proposal; /* what draws surface samples: the surface, or a diffuse stand-in for COSINE */
-    vec3 geometric_normal;
-    helio_counts counts;
-    uint32_t windows[CUBE_FACES];
-    uint32_t surface_seed;
-} gathering;
-
 /* ---- counts ---- */
 
-static float light_weight(const helio_pools *pools, uint32_t technique, vec3 normal, bool no_beta)
+/* What the pools are worth to a point: beta_f x flux_f for faces. Returns the sum. */
+static float weigh_pools(const helio_pools *pools, vec3 normal, bool no_beta, float weights[CUBE_FACES])
 {
     const helio_tables *tables = pools->tables;
     if (pools->parts.light == STRATEGY_LIGHT_WHOLE)
-        return tables->faces[CUBE_FACES] != 0 ? 1.0f : 0.0f;
-    float beta = strategy_beta(technique, normal);
-    if (no_beta)
-        beta = beta > 0.0f ? 1.0f : 0.0f;
-    return beta * (float)tables->flux[technique];
+        return weights[0] = tables->faces[CUBE_FACES] != 0 ? 1.0f : 0.0f;
+    float total = 0.0f;
+    strategy_betas(normal, weights);
+    for (int face = 0; face < CUBE_FACES; face++) {
+        if (no_beta)
+            weights[face] = weights[face] > 0.0f ? 1.0f : 0.0f;
+        weights[face] *= (float)tables->flux[face];
+        total += weights[face];
+    }
+    return total;
 }
 
 /* Expected counts m_k: samples in proportion to beta_f x flux_f, and a fixed share for the surface. All are 0 where no
@@ -81,26 +75,49 @@ static float light_weight(const helio_pools *pools, uint32_t technique, vec3 nor
 static void expect_counts(const helio_pools *pools, const helio_estimate_desc *desc, vec3 normal,
                           float expected[TECHNIQUES])
 {
-    bool has_surface = pools->parts.surface != STRATEGY_SURFACE_NONE;
-    float samples = (float)desc->samples, total = 0.0f;
+    float samples = (float)desc->samples, weights[CUBE_FACES];
     memset(expected, 0, TECHNIQUES * sizeof *expected);
     if (pools->count == 0) {
         expected[TECHNIQUE_SURFACE] = samples;
         return;
     }
-    for (uint32_t k = 0; k < pools->count; k++)
-        total += expected[k] = light_weight(pools, k, normal, desc->no_beta);
-    if (!(total > 0.0f)) {
-        memset(expected, 0, TECHNIQUES * sizeof *expected);
+    float total = weigh_pools(pools, normal, desc->no_beta, weights);
+    if (!(total > 0.0f))
         return;
-    }
-    float surface_samples = has_surface ? samples * desc->brdf_share : 0.0f;
+    float by_surface = pools->parts.surface != STRATEGY_SURFACE_NONE ? samples * desc->brdf_share : 0.0f;
     for (uint32_t k = 0; k < pools->count; k++)
-        expected[k] *= (samples - surface_samples) / total;
-    expected[TECHNIQUE_SURFACE] = surface_samples;
+        expected[k] = weights[k] * ((samples - by_surface) / total);
+    expected[TECHNIQUE_SURFACE] = by_surface;
 }
 
-/* ---- samples ---- */
+/* ---- what is known before samples are taken ---- */
+
+/* sum_k m_k pdf_k over the light techniques is expected_in_face x the density of the one face that holds a direction.
+ */
+static void expect_in_faces(gathering *g)
+{
+    const helio_pools *pools = g->pools;
+    for (uint32_t face = 0; face < CUBE_FACES; face++) {
+        if (pools->parts.light == STRATEGY_LIGHT_WHOLE)
+            g->expected_in_face[face] = g->counts.expected[0] * tables_face_probability(pools->tables, face);
+        else
+            g->expected_in_face[face] = pools->count ? g->counts.expected[face] : 0.0f;
+    }
+}
+
+static void begin_surface_samples(gathering *g, uint32_t seed)
+{
+    if (g->pools->parts.surface == STRATEGY_SURFACE_COSINE) {
+        const helio_material matte = {.kind = HELIO_MATERIAL_DIFFUSE, .diffuse = {1, 1, 1}};
+        g->proposal = brdf_prepare(&matte, g->surface.normal, g->surface.view);
+    } else {
+        brdf_prepare_share(&g->surface);
+        g->proposal = g->surface;
+    }
+    g->proposal_axes = brdf_find_axes(&g->proposal);
+    g->surface_seed = hash_combine(seed, STREAM_SURFACE);
+    expect_in_faces(g);
+}
 
 static void begin(gathering *g, const helio_pools *pools, const helio_shading_point *point,
                   const helio_estimate_desc *desc)
@@ -111,149 +128,122 @@ static void begin(gathering *g, const helio_pools *pools, const helio_shading_po
     g->pools = pools;
     g->environment = environment;
     g->geometric_normal = environment_to_map(environment, vec3_from(point->geometric_normal));
-    g->surface = brdf_prepare(&point->material, normal, view);
-    g->proposal = g->surface;
-    if (pools->parts.surface == STRATEGY_SURFACE_COSINE) {
-        const helio_material matte = {.kind = HELIO_MATERIAL_DIFFUSE, .diffuse = {1, 1, 1}};
-        g->proposal = brdf_prepare(&matte, normal, view);
-    }
+    brdf_prepare_value(&g->surface, &point->material, normal, view);
     expect_counts(pools, desc, normal, g->counts.expected);
     strategy_round(g->counts.expected, desc->samples, unit_float(hash_combine(point->seed, STREAM_ROUNDING)),
                    g->counts.realised);
-    g->surface_seed = hash_combine(point->seed, STREAM_SURFACE);
+    if (g->counts.expected[TECHNIQUE_SURFACE] > 0.0f)
+        begin_surface_samples(g, point->seed);
     uint32_t choice = hash_combine(point->seed, STREAM_WINDOW);
     for (uint32_t k = 0; k < pools->count; k++)
-        g->windows[k] = pools_window(pools, g->counts.realised[k], hash_combine(choice, k));
+        if (g->counts.realised[k] > 0)
+            g->windows[k] = pools_window(pools, g->counts.realised[k], hash_combine(choice, k));
 }
 
-static float surface_density(const gathering *g, vec3 direction)
+/* ---- samples ---- */
+
+/* How far a point has come with its samples. */
+typedef struct sample_cursor {
+    uint32_t technique, taken; /* samples of that technique */
+} sample_cursor;
+
+static void take_samples(const gathering *g, const kernel_set *kernels, uint32_t technique, uint32_t first,
+                         uint32_t count, sample_block *block)
 {
-    float expected = g->counts.expected[TECHNIQUE_SURFACE];
-    return expected > 0.0f ? expected * brdf_density(&g->proposal, direction) : 0.0f;
+    if (technique == TECHNIQUE_SURFACE)
+        kernels->draw_surface(g, first, count, block);
+    else
+        kernels->take_pool(g, technique, g->windows[technique] + first, count, block);
 }
 
-/* Radiance x BRDF x cosine / density, where the direction is above both horizons. */
-static void weigh(const gathering *g, vec3 direction, const float radiance[3], helio_sample *sample)
+/* The next samples, as many as fit, and what each contributes; false if there are none left. */
+static bool next_block(const gathering *g, const kernel_set *kernels, sample_cursor *cursor, sample_block *block)
 {
-    float cosine = dot(g->surface.normal, direction), value[3];
-    vec3_to(environment_to_world(g->environment, direction), sample->direction);
-    sample->contribution[0] = sample->contribution[1] = sample->contribution[2] = 0.0f;
-    if (!(cosine > 0.0f) || !(dot(g->geometric_normal, direction) > 0.0f) || !(sample->density > 0.0f))
-        return;
-    brdf_value(&g->surface, direction, value);
-    float factor = cosine / sample->density * g->environment->intensity;
-    for (int c = 0; c < 3; c++)
-        sample->contribution[c] = radiance[c] * value[c] * factor;
+    block->count = 0;
+    while (cursor->technique < TECHNIQUES && block->count < BLOCK_SAMPLES) {
+        uint32_t rest = g->counts.realised[cursor->technique] - cursor->taken, room = BLOCK_SAMPLES - block->count;
+        uint32_t count = rest < room ? rest : room;
+        if (count > 0)
+            take_samples(g, kernels, cursor->technique, cursor->taken, count, block);
+        cursor->taken += count;
+        if (count == rest)
+            *cursor = (sample_cursor){cursor->technique + 1, 0};
+    }
+    if (block->count > 0)
+        kernels->weigh(g, block);
+    return block->count > 0;
 }
 
-static void take_light_sample(const gathering *g, uint32_t technique, uint32_t index, helio_sample *sample)
+static vec3 block_direction(const gathering *g, const sample_block *block, uint32_t i)
 {
-    const helio_pools *pools = g->pools;
-    size_t i = (size_t)technique * pools->pool_length + g->windows[technique] + index;
-    vec3 direction = {pools->direction_x[i], pools->direction_y[i], pools->direction_z[i]};
-    const float radiance[3] = {pools->red[i], pools->green[i], pools->blue[i]};
-    sample->technique = technique;
-    sample->density = g->counts.expected[technique] * pools->density[i] + surface_density(g, direction);
-    weigh(g, direction, radiance, sample);
-}
-
-/* sum m_k pdf_k of the light techniques: the density of the one face that holds the direction. */
-static float light_density(const gathering *g, cube_position at, uint32_t row, uint32_t column)
-{
-    const helio_pools *pools = g->pools;
-    if (pools->count == 0)
-        return 0.0f;
-    face_table table = tables_face(pools->tables, at.face);
-    float density = face_table_density(&table, row, column, at.u, at.v);
-    return pools->parts.light == STRATEGY_LIGHT_WHOLE
-               ? g->counts.expected[0] * density * tables_face_probability(pools->tables, at.face)
-               : g->counts.expected[at.face] * density;
-}
-
-static void take_surface_sample(const gathering *g, uint32_t index, helio_sample *sample)
-{
-    float u = unit_float(scrambled_sobol(index, 0, g->surface_seed));
-    float v = unit_float(scrambled_sobol(index, 1, g->surface_seed));
-    float lobe = unit_float(scrambled_sobol(index, 2, g->surface_seed));
-    vec3 direction = brdf_sample(&g->proposal, lobe, u, v);
-    cube_position at = cube_project(direction);
-    uint32_t row = cube_texel(at.v, g->environment->size), column = cube_texel(at.u, g->environment->size);
-    sample->technique = TECHNIQUE_SURFACE;
-    sample->density = surface_density(g, direction) + light_density(g, at, row, column);
-    weigh(g, direction, environment_texel(g->environment, at.face, row, column), sample);
-}
-
-/* Samples first ... first + count - 1 of a technique. */
-static void take_samples(const gathering *g, uint32_t technique, uint32_t first, uint32_t count, helio_sample *samples)
-{
-    for (uint32_t i = 0; i < count; i++)
-        if (technique == TECHNIQUE_SURFACE)
-            take_surface_sample(g, first + i, &samples[i]);
-        else
-            take_light_sample(g, technique, first + i, &samples[i]);
+    const vec3 direction = {block->samples[SAMPLE_X][i], block->samples[SAMPLE_Y][i], block->samples[SAMPLE_Z][i]};
+    return environment_to_world(g->environment, direction);
 }
 
 /* ---- sums ---- */
 
-static bool is_useful(const helio_sample *sample)
+/* The samples of a block that contribute, and their world-space directions. */
+typedef struct ray_list {
+    uint32_t count;
+    uint8_t samples[BLOCK_SAMPLES];
+    float x[BLOCK_SAMPLES], y[BLOCK_SAMPLES], z[BLOCK_SAMPLES];
+} ray_list;
+
+static void list_rays(const gathering *g, const sample_block *block, ray_list *rays)
 {
-    return sample->contribution[0] > 0.0f || sample->contribution[1] > 0.0f || sample->contribution[2] > 0.0f;
+    rays->count = 0;
+    for (uint32_t i = 0; i < block->count; i++) {
+        if (!(block->red[i] + block->green[i] + block->blue[i] > 0.0f))
+            continue;
+        vec3 direction = block_direction(g, block, i);
+        rays->samples[rays->count] = (uint8_t)i;
+        rays->x[rays->count] = direction.x;
+        rays->y[rays->count] = direction.y;
+        rays->z[rays->count] = direction.z;
+        rays->count++;
+    }
 }
 
-static void add_contribution(float sum[3], const helio_sample *sample)
+/* Asks for all directions of a block at once, as ray tracers answer them faster than one by one, and takes the light of
+ * those in shadow away. Returns how many were asked for. */
+static uint32_t cast_shadows(const gathering *g, const helio_shading_point *point, const helio_estimate_desc *desc,
+                             sample_block *block)
+{
+    ray_list rays;
+    bool visible[BLOCK_SAMPLES];
+    list_rays(g, block, &rays);
+    if (rays.count > 0)
+        desc->visibility(desc->user, point, rays.count, rays.x, rays.y, rays.z, visible);
+    for (uint32_t i = 0; i < rays.count; i++)
+        if (!visible[i])
+            block->red[rays.samples[i]] = block->green[rays.samples[i]] = block->blue[rays.samples[i]] = 0.0f;
+    return rays.count;
+}
+
+static void add_sum(float rgb[3], const block_sum *sum)
 {
     for (int c = 0; c < 3; c++)
-        sum[c] += sample->contribution[c];
-}
-
-/* Asks for all directions at once: ray tracers answer many faster than one by one. */
-static void find_visible(const helio_shading_point *point, const helio_estimate_desc *desc, const helio_sample *samples,
-                         const uint32_t *useful, uint32_t count, bool *visible)
-{
-    float x[BATCH], y[BATCH], z[BATCH];
-    for (uint32_t i = 0; i < count; i++) {
-        const float *direction = samples[useful[i]].direction;
-        x[i] = direction[0];
-        y[i] = direction[1];
-        z[i] = direction[2];
-    }
-    desc->visibility(desc->user, point, count, x, y, z, visible);
-}
-
-static void add_samples(const helio_shading_point *point, const helio_estimate_desc *desc, const helio_sample *samples,
-                        uint32_t count, estimate_result *result)
-{
-    uint32_t useful[BATCH], useful_count = 0;
-    bool visible[BATCH];
-    for (uint32_t i = 0; i < count; i++)
-        if (is_useful(&samples[i]))
-            useful[useful_count++] = i;
-    if (desc->visibility != NULL && useful_count > 0)
-        find_visible(point, desc, samples, useful, useful_count, visible);
-    for (uint32_t i = 0; i < useful_count; i++) {
-        add_contribution(result->unoccluded, &samples[useful[i]]);
-        if (desc->visibility == NULL || visible[i])
-            add_contribution(result->visible, &samples[useful[i]]);
-    }
-    result->info.samples += count;
-    result->info.useful += useful_count;
-    result->info.rays += desc->visibility != NULL ? useful_count : 0;
+        rgb[c] += sum->rgb[c];
 }
 
 void estimate_point(const helio_pools *pools, const helio_shading_point *point, const helio_estimate_desc *desc,
                     estimate_result *result)
 {
-    gathering g = {0};
-    helio_sample samples[BATCH];
-    begin(&g, pools, point, desc);
+    const kernel_set *kernels = kernels_of(context_isa(pools->tables->environment->context));
+    gathering g;
+    sample_block block;
     *result = (estimate_result){0};
-    for (uint32_t technique = 0; technique < TECHNIQUES; technique++) {
-        uint32_t count = g.counts.realised[technique];
-        for (uint32_t first = 0; first < count; first += BATCH) {
-            uint32_t part = count - first < BATCH ? count - first : BATCH;
-            take_samples(&g, technique, first, part, samples);
-            add_samples(point, desc, samples, part, result);
+    begin(&g, pools, point, desc);
+    for (sample_cursor cursor = {0}; next_block(&g, kernels, &cursor, &block);) {
+        block_sum sum = kernels->sum_block(&block);
+        result->info.samples += block.count;
+        result->info.useful += sum.useful;
+        add_sum(result->unoccluded, &sum);
+        if (desc->visibility != NULL && sum.useful > 0) {
+            result->info.rays += cast_shadows(&g, point, desc, &block);
+            sum = kernels->sum_block(&block); /* in the same order: what nothing shadows stays the same number */
         }
+        add_sum(result->visible, &sum);
     }
 }
 
@@ -313,7 +303,7 @@ static helio_status begin_checked(const helio_pools *pools, const helio_shading_
 helio_status helio_count(const helio_pools *pools, const helio_shading_point *point, const helio_estimate_desc *desc,
                          helio_counts *counts)
 {
-    gathering g = {0};
+    gathering g;
     if (counts == NULL)
         return fail(HELIO_ERR_ARGUMENT, "helio_count needs a place for the counts");
     HELIO_TRY(begin_checked(pools, point, desc, &g));
@@ -321,18 +311,33 @@ helio_status helio_count(const helio_pools *pools, const helio_shading_point *po
     return HELIO_OK;
 }
 
+static void write_sample(const gathering *g, const sample_block *block, uint32_t i, uint32_t technique,
+                         helio_sample *sample)
+{
+    vec3_to(block_direction(g, block, i), sample->direction);
+    sample->contribution[0] = block->red[i];
+    sample->contribution[1] = block->green[i];
+    sample->contribution[2] = block->blue[i];
+    sample->density = block->density[i];
+    sample->technique = technique;
+}
+
 helio_status helio_gather(const helio_pools *pools, const helio_shading_point *point, const helio_estimate_desc *desc,
                           helio_sample *samples, uint32_t *count)
 {
-    gathering g = {0};
-    uint32_t taken = 0;
+    gathering g;
+    sample_block block;
+    uint32_t taken = 0, technique = 0, end = 0; /* of the samples of techniques 0 ... technique - 1 */
     if (samples == NULL || count == NULL)
         return fail(HELIO_ERR_ARGUMENT, "helio_gather needs places for samples and their count");
     HELIO_TRY(begin_checked(pools, point, desc, &g));
-    for (uint32_t technique = 0; technique < TECHNIQUES; technique++) {
-        take_samples(&g, technique, 0, g.counts.realised[technique], samples + taken);
-        taken += g.counts.realised[technique];
-    }
+    const kernel_set *kernels = kernels_of(context_isa(g.environment->context));
+    for (sample_cursor cursor = {0}; next_block(&g, kernels, &cursor, &block);)
+        for (uint32_t i = 0; i < block.count; i++, taken++) {
+            while (taken == end)
+                end += g.counts.realised[technique++];
+            write_sample(&g, &block, i, technique - 1, &samples[taken]);
+        }
     *count = taken;
     return HELIO_OK;
 }

@@ -2,26 +2,58 @@
  * kernels.h - the inner loops that are built once for each instruction set, and how to get those of one.
  *
  * The files named ..._kernel.c are compiled with HELIO_ISA, the suffix of their functions' names, and HELIO_LANES, how
- * many floats a register holds (1 for the scalar build, which also takes its elementary functions from libm). They hold
- * no state and no policy: what to compute is decided elsewhere. */
+ * many floats a register holds (1 for the scalar build, the definition of the others). They hold no state and no
+ * policy: what to compute is decided elsewhere. */
 #ifndef HELIOSTAT_SRC_KERNELS_H
 #define HELIOSTAT_SRC_KERNELS_H
 
 #include "core/isa.h"
+#include "sampling/gathering.h"
 #include "sampling/tables.h"
 
 #define KERNEL_JOIN(name, set) name##_##set
 #define KERNEL_NAME(name, set) KERNEL_JOIN(name, set)
 #define KERNEL(name) KERNEL_NAME(name, HELIO_ISA)
 
-/* Prefix sums of the weights of one row of texels. rgb: [size][3]. solid_angles: [size], or NULL for luminance alone.
- * sums: [size + 1], or NULL if only the total is wanted. The same bits with every instruction set. */
-typedef row_sum (*sum_row_kernel)(const float *rgb, const float *solid_angles, uint32_t size, uint32_t *sums);
+struct background;
 
 typedef struct kernel_set {
-    sum_row_kernel sum_row;
+    /* Prefix sums of the weights of one row of texels. rgb: [size][3]. solid_angles: [size], or NULL for luminance
+     * alone. sums: [size + 1], or NULL if only the total is wanted. The same bits with every instruction set. */
+    row_sum (*sum_row)(const float *rgb, const float *solid_angles, uint32_t size, uint32_t *sums);
+
+    /* Draws samples first ... first + count - 1 of a pool that is not black. seed: of the pool. The same bits with
+     * every instruction set. */
+    void (*draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
+
+    /* Adds samples to a block, which must have room: those of a pool from index `first` on, or samples
+     * first ... first + count - 1 of the surface technique, drawn now, with the light in their directions. The same
+     * bits with every instruction set. */
+    void (*take_pool)(const gathering *g, uint32_t pool, uint32_t first, uint32_t count, sample_block *block);
+    void (*draw_surface)(const gathering *g, uint32_t first, uint32_t count, sample_block *block);
+
+    /* What the samples of a block contribute, and the sum. */
+    void (*weigh)(const gathering *g, sample_block *block);
+    block_sum (*sum_block)(const sample_block *block);
+
+    /* background_fill(), except for those points whose numbers are written to left: [count]. Returns how many these
+     * are. */
+    uint32_t (*fill_background)(const struct background *b, uint32_t count, const float *x, const float *y,
+                                float (*rgba)[4], uint32_t *left);
 } kernel_set;
 
 const kernel_set *kernels_of(isa set);
+
+#ifdef HELIO_ISA
+row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, uint32_t size, uint32_t *sums);
+void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
+void KERNEL(take_pool)(const gathering *g, uint32_t pool, uint32_t first, uint32_t count, sample_block *block);
+void KERNEL(draw_surface)(const gathering *g, uint32_t first, uint32_t count, sample_block *block);
+void KERNEL(weigh)(const gathering *g, sample_block *block);
+block_sum KERNEL(sum_block)(const sample_block *block);
+uint32_t KERNEL(fill_background)(const struct background *b, uint32_t count, const float *x, const float *y,
+                                 float (*rgba)[4], uint32_t *left);
+extern const kernel_set KERNEL(kernels);
+#endif
 
 #endif

@@ -4,8 +4,11 @@
 #include "core/context.h"
 #include "core/error.h"
 #include "core/random.h"
+#include "sampling/kernels.h"
 
-enum { DEFAULT_LENGTH = 1024, LEAST_LENGTH = 64, GREATEST_LENGTH = 65536, PIECE = 256, POOL_ARRAYS = 7 };
+#include <string.h>
+
+enum { DEFAULT_LENGTH = 1024, LEAST_LENGTH = 64, GREATEST_LENGTH = 65536, PIECE = 256 };
 
 static helio_status resolve_desc(const helio_pools_desc *given, helio_pools_desc *desc)
 {
@@ -22,14 +25,15 @@ static helio_status resolve_desc(const helio_pools_desc *given, helio_pools_desc
 
 static helio_status allocate_arrays(helio_pools *pools)
 {
-    size_t samples = (size_t)pools->count * pools->pool_length;
-    pools->memory = context_allocate(pools->tables->environment->context, samples, POOL_ARRAYS * sizeof(float));
-    if (pools->memory == NULL)
+    helio_context *context = pools->tables->environment->context;
+    uint32_t limit = helio_pools_sample_limit(pools);
+    pools->stride = (size_t)pools->count * pools->pool_length + POOL_PADDING;
+    pools->samples = context_allocate(context, pools->stride, SAMPLE_ARRAYS * sizeof(float));
+    pools->third_dimension = context_allocate(context, limit, sizeof *pools->third_dimension);
+    if (pools->samples == NULL || pools->third_dimension == NULL)
         return HELIO_ERR_MEMORY;
-    float **arrays[POOL_ARRAYS] = {&pools->direction_x, &pools->direction_y, &pools->direction_z, &pools->red,
-                                   &pools->green,       &pools->blue,        &pools->density};
-    for (int i = 0; i < POOL_ARRAYS; i++)
-        *arrays[i] = pools->memory + (size_t)i * samples;
+    for (uint32_t i = 0; i < limit; i++)
+        pools->third_dimension[i] = sobol_reversed(i, 2);
     return HELIO_OK;
 }
 
@@ -64,7 +68,8 @@ void helio_pools_destroy(helio_pools *pools)
     if (pools == NULL)
         return;
     helio_context *context = pools->tables->environment->context;
-    context_release(context, pools->memory);
+    context_release(context, pools->third_dimension);
+    context_release(context, pools->samples);
     context_release(context, pools);
 }
 
@@ -80,39 +85,37 @@ typedef struct drawing {
     uint32_t seed;
 } drawing;
 
-/* One sample of one pool. A black pool is left at density 0; no point ever reads it. */
-static void draw_sample(helio_pools *pools, uint32_t pool, uint32_t index, uint32_t seed)
-{
-    uint32_t x = scrambled_sobol(index, 0, seed), y = scrambled_sobol(index, 1, seed);
-    helio_table_sample sample = {0};
-    if (pools->parts.light == STRATEGY_LIGHT_WHOLE)
-        tables_sample_whole(pools->tables, x, y, &sample);
-    else
-        tables_sample(pools->tables, pool, x, y, &sample);
-    size_t i = (size_t)pool * pools->pool_length + index;
-    pools->direction_x[i] = sample.direction[0];
-    pools->direction_y[i] = sample.direction[1];
-    pools->direction_z[i] = sample.direction[2];
-    pools->red[i] = sample.radiance[0];
-    pools->green[i] = sample.radiance[1];
-    pools->blue[i] = sample.radiance[2];
-    pools->density[i] = sample.density;
-}
-
 static uint32_t pieces_per_pool(const helio_pools *pools)
 {
     return (pools->pool_length + PIECE - 1) / PIECE;
 }
 
+static bool is_black(const helio_pools *pools, uint32_t pool)
+{
+    if (pools->parts.light == STRATEGY_LIGHT_WHOLE)
+        return pools->tables->faces[CUBE_FACES] == 0;
+    return pools->tables->marginals[(size_t)pool * (pools->tables->size + 1) + pools->tables->size] == 0;
+}
+
+/* A black pool is left at density 0; no point ever reads it. */
+static void clear_samples(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count)
+{
+    for (int array = 0; array < SAMPLE_ARRAYS; array++)
+        memset(pools_array(pools, pool, (enum sample_array)array) + first, 0, count * sizeof(float));
+}
+
 static void draw_piece(void *data, size_t piece)
 {
     const drawing *work = data;
-    uint32_t pieces = pieces_per_pool(work->pools);
+    helio_pools *pools = work->pools;
+    uint32_t pieces = pieces_per_pool(pools);
     uint32_t pool = (uint32_t)piece / pieces, first = (uint32_t)piece % pieces * PIECE;
-    uint32_t end = first + PIECE < work->pools->pool_length ? first + PIECE : work->pools->pool_length;
-    uint32_t seed = hash_combine(work->seed, pool);
-    for (uint32_t index = first; index < end; index++)
-        draw_sample(work->pools, pool, index, seed);
+    uint32_t count = pools->pool_length - first < PIECE ? pools->pool_length - first : PIECE;
+    if (is_black(pools, pool))
+        clear_samples(pools, pool, first, count);
+    else
+        kernels_of(context_isa(pools->tables->environment->context))
+            ->draw_pool(pools, pool, first, count, hash_combine(work->seed, pool));
 }
 
 helio_status helio_pools_draw(helio_pools *pools, uint32_t seed, uint32_t pass)
@@ -128,13 +131,4 @@ helio_status helio_pools_draw(helio_pools *pools, uint32_t seed, uint32_t pass)
     context_parallel_for(environment->context, (size_t)pools->count * pieces_per_pool(pools), draw_piece, &work);
     pools->frame = environment->frame;
     return HELIO_OK;
-}
-
-uint32_t pools_window(const helio_pools *pools, uint32_t wanted, uint32_t choice)
-{
-    uint32_t width = 1;
-    while (width < wanted)
-        width *= 2;
-    uint32_t windows = pools->pool_length / width;
-    return (uint32_t)(((uint64_t)choice * windows) >> 32) * width;
 }

@@ -7,8 +7,21 @@
 #include "sampling/tables.h"
 
 enum {
-    POOL_SHARE = 8
-}; /* a point takes at most one eighth of a pool, so that its neighbours have windows of their own */
+    POOL_SHARE = 8,   /* a point takes at most one eighth of a pool, so that its neighbours have windows of their own */
+    POOL_PADDING = 16 /* floats that a kernel may read past the end: the lanes of the widest register */
+};
+
+/* The numbers of a sample, each in an array of its own. */
+enum sample_array {
+    SAMPLE_X,
+    SAMPLE_Y,
+    SAMPLE_Z,
+    SAMPLE_RED,
+    SAMPLE_GREEN,
+    SAMPLE_BLUE,
+    SAMPLE_DENSITY,
+    SAMPLE_ARRAYS
+};
 
 struct helio_pools {
     const helio_tables *tables;
@@ -18,15 +31,26 @@ struct helio_pools {
     uint32_t count;       /* pools: 6, 1 or 0 */
     uint32_t pool_length; /* samples in each: M, or 6 M where there is one pool */
     uint64_t frame;       /* of the environment, when drawn */
-    float *memory;
-    /* Each [count][pool_length]. Directions in the map's space; density given the pool, 1/sr. */
-    float *direction_x, *direction_y, *direction_z;
-    float *red, *green, *blue;
-    float *density;
+    /* [SAMPLE_ARRAYS], arrays `stride` floats apart: [count][pool_length] each, and POOL_PADDING more that may be read.
+     * Directions in the map's space, radiance, density given the pool (1/sr). */
+    float *samples;
+    size_t stride;
+    uint32_t *third_dimension; /* [M / 8]: sobol_reversed(i, 2), for which there is no closed form */
 };
 
-/* First sample of the window from which a point reads `wanted` samples: windows are aligned to powers of two, so that
- * each is a net of its own. choice: any hash. */
-uint32_t pools_window(const helio_pools *pools, uint32_t wanted, uint32_t choice);
+/* One of the arrays of a pool: [pool_length]. */
+static inline float *pools_array(const helio_pools *pools, uint32_t pool, enum sample_array array)
+{
+    return pools->samples + (size_t)array * pools->stride + (size_t)pool * pools->pool_length;
+}
+
+/* First sample of the window from which a point reads `wanted` samples, at least 1: windows are aligned to powers of
+ * two, so that each is a net of its own. choice: any hash. */
+static inline uint32_t pools_window(const helio_pools *pools, uint32_t wanted, uint32_t choice)
+{
+    int bits = wanted > 1 ? 32 - __builtin_clz(wanted - 1) : 0;
+    uint32_t windows = pools->pool_length >> bits;
+    return (uint32_t)(((uint64_t)choice * windows) >> 32) << bits;
+}
 
 #endif

@@ -3,9 +3,12 @@
  * The kernels of one instruction set. */
 #include "sampling/kernels.h"
 
-row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, uint32_t size, uint32_t *sums);
-
-extern const kernel_set KERNEL(kernels);
 const kernel_set KERNEL(kernels) = {
     .sum_row = KERNEL(sum_row),
+    .draw_pool = KERNEL(draw_pool),
+    .take_pool = KERNEL(take_pool),
+    .draw_surface = KERNEL(draw_surface),
+    .weigh = KERNEL(weigh),
+    .sum_block = KERNEL(sum_block),
+    .fill_background = KERNEL(fill_background),
 };

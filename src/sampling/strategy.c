@@ -3,7 +3,6 @@
 
 #include "core/error.h"
 #include "core/name_list.h"
-#include "env/cube.h"
 
 static const char *const NAMES[] = {
     [HELIO_STRATEGY_AUTO] = "auto",
@@ -51,12 +50,6 @@ helio_strategy helio_strategy_resolve(helio_strategy strategy)
 strategy_parts strategy_divide(helio_strategy strategy)
 {
     return PARTS[helio_strategy_resolve(strategy)];
-}
-
-float strategy_beta(uint32_t face, vec3 normal)
-{
-    const cube_face *f = &cube_faces[face];
-    return fmaxf(0.0f, dot(normal, f->axis) + fabsf(dot(normal, f->right)) + fabsf(dot(normal, f->down)));
 }
 
 void strategy_round(const float expected[TECHNIQUES], uint32_t samples, float offset, uint32_t realised[TECHNIQUES])

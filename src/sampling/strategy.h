@@ -34,10 +34,18 @@ strategy_parts strategy_divide(helio_strategy strategy);
 /* HELIO_ERR_ARGUMENT for a value that is no strategy. */
 helio_status strategy_check(helio_strategy strategy);
 
-/* How much, at most, a face of the cube can light a surface with this normal (in the map's space): the largest cosine,
- * times the distance, over the face's corners. Continuous in the normal; 0 exactly when the whole face is below the
- * horizon. This is the paper's beta_f. */
-float strategy_beta(uint32_t face, vec3 normal);
+/* How much, at most, each face of the cube can light a surface with this normal (in the map's space): the largest
+ * cosine, times the distance, over the face's corners, max(0, n.c + |n.a| + |n.b|) with the face's axis c and tangent
+ * axes a and b. Continuous in the normal; 0 exactly when the whole face is below the horizon. This is the paper's
+ * beta_f. */
+static inline void strategy_betas(vec3 normal, float betas[6])
+{
+    float x = fabsf(normal.x), y = fabsf(normal.y), z = fabsf(normal.z);
+    const float sums[6] = {normal.x + y + z,  -normal.x + y + z, normal.y + x + z,
+                           -normal.y + x + z, normal.z + x + y,  -normal.z + x + y};
+    for (int face = 0; face < 6; face++)
+        betas[face] = sums[face] > 0.0f ? sums[face] : 0.0f;
+}
 
 /* Realised counts: systematic rounding of the expected ones, offset in [0, 1). Each has its expected value as mean over
  * offsets, and they sum to samples exactly (or to 0, if all expected counts are 0). */

@@ -12,6 +12,8 @@
 #include "core/random.h"
 #include "sampling/kernels.h"
 
+enum { ROWS_AT_ONCE = 16 }; /* the piece of work of a thread */
+
 /* ---- creation ---- */
 
 static const char *const NAMES[] = {"solid-angle", "paper"};
@@ -47,11 +49,12 @@ helio_status helio_tables_create(helio_environment *environment, helio_weighting
     tables->size = environment->size;
     tables->rows = context_allocate(context, CUBE_FACES * size * (size + 1), sizeof *tables->rows);
     tables->marginals = context_allocate(context, CUBE_FACES * (size + 1), sizeof *tables->marginals);
+    tables->row_densities = context_allocate(context, CUBE_FACES * size, sizeof *tables->row_densities);
     tables->row_sums = context_allocate(context, CUBE_FACES * size, sizeof *tables->row_sums);
     tables->row_fluxes = tables->row_sums;
     if (weighting == HELIO_WEIGHTING_PAPER)
         tables->row_fluxes = context_allocate(context, CUBE_FACES * size, sizeof *tables->row_fluxes);
-    if (!tables->rows || !tables->marginals || !tables->row_sums || !tables->row_fluxes) {
+    if (!tables->rows || !tables->marginals || !tables->row_densities || !tables->row_sums || !tables->row_fluxes) {
         helio_tables_destroy(tables);
         return HELIO_ERR_MEMORY;
     }
@@ -67,6 +70,7 @@ void helio_tables_destroy(helio_tables *tables)
     if (tables->row_fluxes != tables->row_sums)
         context_release(context, tables->row_fluxes);
     context_release(context, tables->row_sums);
+    context_release(context, tables->row_densities);
     context_release(context, tables->marginals);
     context_release(context, tables->rows);
     context_release(context, tables);
@@ -74,28 +78,32 @@ void helio_tables_destroy(helio_tables *tables)
 
 /* ---- update ---- */
 
-static void build_row(void *data, size_t index)
+static void build_row(helio_tables *tables, size_t index)
 {
-    helio_tables *tables = data;
     const helio_environment *environment = tables->environment;
+    const kernel_set *kernels = kernels_of(context_isa(environment->context));
     size_t size = tables->size, row = index % size;
     const float *rgb = environment->cube + index * size * 3;
     const float *solid_angles = environment->solid_angle + row * size;
-    sum_row_kernel sum_row = kernels_of(context_isa(environment->context))->sum_row;
     bool paper = tables->weighting == HELIO_WEIGHTING_PAPER;
     tables->row_sums[index] =
-        sum_row(rgb, paper ? NULL : solid_angles, tables->size, tables->rows + index * (size + 1));
+        kernels->sum_row(rgb, paper ? NULL : solid_angles, tables->size, tables->rows + index * (size + 1));
     if (paper)
-        tables->row_fluxes[index] = sum_row(rgb, solid_angles, tables->size, NULL);
+        tables->row_fluxes[index] = kernels->sum_row(rgb, solid_angles, tables->size, NULL);
 }
 
-/* Position of the highest bit of sum x 2^-exponent. */
+static void build_rows(void *data, size_t piece)
+{
+    helio_tables *tables = data;
+    size_t rows = CUBE_FACES * (size_t)tables->size, end = (piece + 1) * ROWS_AT_ONCE;
+    for (size_t index = piece * ROWS_AT_ONCE; index < end && index < rows; index++)
+        build_row(tables, index);
+}
+
+/* Position of the highest bit of sum x 2^-exponent; the sum must not be 0. */
 static int top_bit(row_sum row)
 {
-    int bit = -1;
-    for (uint32_t sum = row.sum; sum != 0; sum >>= 1)
-        bit++;
-    return bit - row.exponent;
+    return 31 - __builtin_clz(row.sum) - row.exponent;
 }
 
 /* The common exponent for which the largest of the sums is below 2^bits. */
@@ -137,23 +145,43 @@ static row_sum sum_rows(const row_sum *rows, uint32_t count, uint32_t *sums)
     return (row_sum){sum, exponent};
 }
 
+/* Probability of each row, shared out among the units of weight in it, per area of the face's square. */
+static void find_row_densities(helio_tables *tables, size_t face)
+{
+    size_t size = tables->size;
+    const uint32_t *marginal = tables->marginals + face * (size + 1);
+    float quarter_texels = 0.25f * ((float)size * (float)size);
+    for (size_t row = 0; row < size; row++) {
+        float probability = (float)(marginal[row + 1] - marginal[row]) / (float)marginal[size];
+        uint32_t sum = tables->row_sums[face * size + row].sum;
+        tables->row_densities[face * size + row] = sum != 0 ? probability / (float)sum * quarter_texels : 0.0f;
+    }
+}
+
+static void build_face(void *data, size_t face)
+{
+    helio_tables *tables = data;
+    size_t size = tables->size;
+    row_sum weight = sum_rows(tables->row_sums + face * size, tables->size, tables->marginals + face * (size + 1));
+    row_sum flux = tables->weighting == HELIO_WEIGHTING_PAPER
+                       ? sum_rows(tables->row_fluxes + face * size, tables->size, NULL)
+                       : weight;
+    find_row_densities(tables, face);
+    tables->face_sums[face] = weight;
+    tables->flux[face] = ldexp((double)flux.sum, -flux.exponent) * 4.0 / ((double)size * (double)size);
+}
+
 helio_status helio_tables_update(helio_tables *tables)
 {
     if (tables == NULL)
         return fail(HELIO_ERR_ARGUMENT, "helio_tables_update needs tables");
     if (tables->environment->frame == 0)
         return fail(HELIO_ERR_ARGUMENT, "the environment holds no map yet; call helio_environment_update first");
-    size_t size = tables->size;
-    context_parallel_for(tables->environment->context, CUBE_FACES * size, build_row, tables);
-    row_sum faces[CUBE_FACES];
-    for (size_t face = 0; face < CUBE_FACES; face++) {
-        faces[face] = sum_rows(tables->row_sums + face * size, tables->size, tables->marginals + face * (size + 1));
-        row_sum flux = tables->weighting == HELIO_WEIGHTING_PAPER
-                           ? sum_rows(tables->row_fluxes + face * size, tables->size, NULL)
-                           : faces[face];
-        tables->flux[face] = ldexp((double)flux.sum, -flux.exponent) * 4.0 / ((double)size * (double)size);
-    }
-    sum_rows(faces, CUBE_FACES, tables->faces);
+    helio_context *context = tables->environment->context;
+    size_t rows = CUBE_FACES * (size_t)tables->size;
+    context_parallel_for(context, (rows + ROWS_AT_ONCE - 1) / ROWS_AT_ONCE, build_rows, tables);
+    context_parallel_for(context, CUBE_FACES, build_face, tables);
+    sum_rows(tables->face_sums, CUBE_FACES, tables->faces);
     tables->frame = tables->environment->frame;
     return HELIO_OK;
 }
@@ -162,8 +190,7 @@ helio_status helio_tables_update(helio_tables *tables)
 
 uint32_t tables_invert(const uint32_t *sums, uint32_t count, uint32_t x, uint32_t *fraction)
 {
-    uint64_t target = (uint64_t)x * sums[count]; /* in units of 2^-32 */
-    uint32_t whole = (uint32_t)(target >> 32), low = 0, high = count;
+    uint32_t whole = (uint32_t)(((uint64_t)x * sums[count]) >> 32), low = 0, high = count;
     while (high - low > 1) { /* sums[low] <= whole < sums[high] */
         uint32_t middle = low + (high - low) / 2;
         if (sums[middle] <= whole)
@@ -171,7 +198,7 @@ uint32_t tables_invert(const uint32_t *sums, uint32_t count, uint32_t x, uint32_
         else
             high = middle;
     }
-    *fraction = (uint32_t)((target - ((uint64_t)sums[low] << 32)) / (sums[low + 1] - sums[low]));
+    *fraction = tables_fraction_within(sums, count, low, x);
     return low;
 }
 
@@ -183,15 +210,7 @@ bool tables_sample(const helio_tables *tables, uint32_t face, uint32_t x, uint32
         return false;
     uint32_t row = tables_invert(table.marginal, size, y, &row_fraction);
     uint32_t column = tables_invert(table.rows + (size_t)row * (size + 1), size, x, &column_fraction);
-    float u = ((float)(2 * column) + 2.0f * unit_float(column_fraction)) / (float)size - 1.0f;
-    float v = ((float)(2 * row) + 2.0f * unit_float(row_fraction)) / (float)size - 1.0f;
-    vec3_to(cube_direction(face, u, v), sample->direction);
-    const float *rgb = environment_texel(tables->environment, face, row, column);
-    for (int c = 0; c < 3; c++)
-        sample->radiance[c] = rgb[c];
-    sample->density = face_table_density(&table, row, column, u, v);
-    sample->row = row;
-    sample->column = column;
+    tables_sample_at(tables, face, row, row_fraction, column, column_fraction, sample);
     return true;
 }
 

@@ -3,6 +3,7 @@
 #ifndef HELIOSTAT_SRC_TABLES_H
 #define HELIOSTAT_SRC_TABLES_H
 
+#include "core/random.h"
 #include "env/environment.h"
 
 #include <heliostat/sampling.h>
@@ -27,42 +28,39 @@ struct helio_tables {
     helio_weighting weighting;
     uint32_t size;
     uint64_t frame;
-    uint32_t *rows;      /* [6][R][R + 1], see helio_table_view */
-    uint32_t *marginals; /* [6][R + 1] */
-    row_sum *row_sums;   /* [6][R]: of the table's weights */
-    row_sum *row_fluxes; /* [6][R]: of luminance x solid angle; the same array unless the weighting is the paper's */
-    uint32_t faces[7];   /* prefix sums over the faces: how the strategy LIGHT divides the whole map */
-    double flux[6];      /* radiance unit x sr */
+    uint32_t *rows;       /* [6][R][R + 1], see helio_table_view */
+    uint32_t *marginals;  /* [6][R + 1] */
+    float *row_densities; /* [6][R]: what a unit of weight in this row adds to the density, see face_table_density() */
+    row_sum *row_sums;    /* [6][R]: of the table's weights */
+    row_sum *row_fluxes;  /* [6][R]: of luminance x solid angle; the same array unless the weighting is the paper's */
+    row_sum face_sums[6]; /* of the marginals */
+    uint32_t faces[7];    /* prefix sums over the faces: how the strategy LIGHT divides the whole map */
+    double flux[6];       /* radiance unit x sr */
 };
 
 /* One face of the tables. */
 typedef struct face_table {
     uint32_t size;
     const uint32_t *rows, *marginal;
+    const float *row_densities;
 } face_table;
 
 static inline face_table tables_face(const helio_tables *tables, uint32_t face)
 {
     size_t size = tables->size;
-    return (face_table){tables->size, tables->rows + face * size * (size + 1), tables->marginals + face * (size + 1)};
+    return (face_table){tables->size, tables->rows + face * size * (size + 1), tables->marginals + face * (size + 1),
+                        tables->row_densities + face * size};
 }
 
 /* Density, 1/sr, of a direction given its face, from the stored integers: Eq. 1 of the paper's supplement,
  *   pdf(w | f) = I_ij / I_f x K / 4 x (1 + u^2 + v^2)^(3/2),
- * where I_ij / I_f is the product of the probabilities of the row and of the column in it. Drawing and MIS both use
- * this. */
+ * where I_ij / I_f is the product of the probabilities of the row and of the column in it. What depends on the row
+ * alone is worked out once a frame. Drawing and MIS both use this. */
 static inline float face_table_density(const face_table *table, uint32_t row, uint32_t column, float u, float v)
 {
-    uint32_t size = table->size;
-    const uint32_t *sums = table->rows + (size_t)row * (size + 1);
-    uint32_t row_weight = table->marginal[row + 1] - table->marginal[row];
-    if (row_weight == 0)
-        return 0.0f;
-    float row_probability = (float)row_weight / (float)table->marginal[size];
-    float column_probability = (float)(sums[column + 1] - sums[column]) / (float)sums[size];
+    const uint32_t *sums = table->rows + (size_t)row * (table->size + 1);
     float radius2 = 1.0f + u * u + v * v;
-    float texels = (float)size * (float)size;
-    return row_probability * column_probability * (0.25f * texels) * (radius2 * sqrtf(radius2));
+    return (float)(sums[column + 1] - sums[column]) * table->row_densities[row] * (radius2 * sqrtf(radius2));
 }
 
 /* Probability that LIGHT gives to a face. */
@@ -71,9 +69,34 @@ static inline float tables_face_probability(const helio_tables *tables, uint32_t
     return tables->faces[6] ? (float)(tables->faces[face + 1] - tables->faces[face]) / (float)tables->faces[6] : 0.0f;
 }
 
-/* Inverts prefix sums [count + 1] at x, a fraction of 2^32. fraction receives where x lies inside of the cell found, as
- * a fraction of 2^32 again. All in integers. The total must not be 0. */
+/* Where x, a fraction of 2^32 that falls into a cell of prefix sums [count + 1], lies inside of that cell: a fraction
+ * of 2^32 again. All in integers. */
+static inline uint32_t tables_fraction_within(const uint32_t *sums, uint32_t count, uint32_t cell, uint32_t x)
+{
+    uint64_t target = (uint64_t)x * sums[count]; /* in units of 2^-32 */
+    return (uint32_t)((target - ((uint64_t)sums[cell] << 32)) / (sums[cell + 1] - sums[cell]));
+}
+
+/* Inverts prefix sums [count + 1] at x, a fraction of 2^32: the cell that holds it. The total must not be 0. fraction
+ * receives where x lies inside of the cell. */
 uint32_t tables_invert(const uint32_t *sums, uint32_t count, uint32_t x, uint32_t *fraction);
+
+/* The sample in a texel, at fractions of 2^32 of its height and width. */
+static inline void tables_sample_at(const helio_tables *tables, uint32_t face, uint32_t row, uint32_t row_fraction,
+                                    uint32_t column, uint32_t column_fraction, helio_table_sample *sample)
+{
+    face_table table = tables_face(tables, face);
+    float size = (float)table.size;
+    float u = ((float)(2 * column) + 2.0f * unit_float(column_fraction)) / size - 1.0f;
+    float v = ((float)(2 * row) + 2.0f * unit_float(row_fraction)) / size - 1.0f;
+    vec3_to(cube_direction(face, u, v), sample->direction);
+    const float *rgb = environment_texel(tables->environment, face, row, column);
+    for (int c = 0; c < 3; c++)
+        sample->radiance[c] = rgb[c];
+    sample->density = face_table_density(&table, row, column, u, v);
+    sample->row = row;
+    sample->column = column;
+}
 
 /* helio_tables_sample() at a point given as fractions of 2^32. */
 bool tables_sample(const helio_tables *tables, uint32_t face, uint32_t x, uint32_t y, helio_table_sample *sample);

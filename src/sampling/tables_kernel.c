@@ -5,44 +5,87 @@
 #include "core/vector.h"
 #include "sampling/kernels.h"
 
+#include <string.h>
+
 row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, uint32_t size, uint32_t *sums);
 
 enum { PIECE = 256 }; /* texels from weights to sums at a time, so that the integers stay in the nearest cache */
 
-/* Luminance x relative solid angle (solid_angles NULL: luminance alone). Relative to 4 / K sr, the largest that a texel
- * of a fine cube has, so that no product overflows. Returns the largest. */
+/* A texel that is lit weighs at least this much, the smallest float that no machine flushes to zero. */
+static const float LEAST_WEIGHT = 0x1p-126f;
+
+/* Luminance x relative solid angle. Relative to 4 / K sr, the largest that a texel of a fine cube has, so that no
+ * product overflows. */
+static inline float weigh(const float *texel, float relative_solid_angle)
+{
+    float weight = luminance(texel) * relative_solid_angle;
+    float brightest = texel[0] > texel[1] ? texel[0] : texel[1];
+    brightest = brightest > texel[2] ? brightest : texel[2];
+    float least = brightest > 0.0f ? LEAST_WEIGHT : 0.0f;
+    return weight > least ? weight : least;
+}
+
+static inline int32_t float_bits(float x)
+{
+    int32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+/* The weights of a row, and the largest of them. The bits of floats that are not negative are ordered like the floats,
+ * and compilers are freer to reorder the maximum of integers. */
 static float weigh_texels(const float *restrict rgb, const float *restrict solid_angles, uint32_t size,
                           float *restrict weights)
 {
-    float largest = 0.0f, quarter_texels = 0.25f * (float)size * (float)size;
+    float largest, quarter_texels = 0.25f * (float)size * (float)size;
+    int32_t largest_bits = 0;
     if (solid_angles == NULL) {
-#pragma omp simd reduction(max : largest)
+#pragma omp simd reduction(max : largest_bits)
         for (uint32_t i = 0; i < size; i++) {
-            weights[i] = luminance(rgb + 3 * (size_t)i);
-            largest = weights[i] > largest ? weights[i] : largest;
+            weights[i] = weigh(rgb + 3 * (size_t)i, 1.0f);
+            int32_t bits = float_bits(weights[i]);
+            largest_bits = bits > largest_bits ? bits : largest_bits;
         }
-        return largest;
+    } else {
+#pragma omp simd reduction(max : largest_bits)
+        for (uint32_t i = 0; i < size; i++) {
+            weights[i] = weigh(rgb + 3 * (size_t)i, solid_angles[i] * quarter_texels);
+            int32_t bits = float_bits(weights[i]);
+            largest_bits = bits > largest_bits ? bits : largest_bits;
+        }
     }
-#pragma omp simd reduction(max : largest)
-    for (uint32_t i = 0; i < size; i++) {
-        weights[i] = luminance(rgb + 3 * (size_t)i) * (solid_angles[i] * quarter_texels);
-        largest = weights[i] > largest ? weights[i] : largest;
-    }
+    memcpy(&largest, &largest_bits, sizeof largest);
     return largest;
 }
 
 /* The weights as integers: rounded, and at least 1 for a texel that is lit, however dark. */
-static void quantise(const float *restrict rgb, const float *restrict weights, uint32_t count, float factor,
-                     uint32_t *restrict integers)
+static void quantise(const float *restrict weights, uint32_t count, float factor, uint32_t *restrict integers)
 {
 #pragma omp simd
     for (uint32_t i = 0; i < count; i++) {
-        const float *texel = rgb + 3 * (size_t)i;
-        float brightest = texel[0] > texel[1] ? texel[0] : texel[1];
-        brightest = brightest > texel[2] ? brightest : texel[2];
-        int32_t least = brightest > 0.0f, integer = (int32_t)(weights[i] * factor + 0.5f);
+        int32_t least = weights[i] > 0.0f, integer = (int32_t)(weights[i] * factor + 0.5f);
         integers[i] = (uint32_t)(integer > least ? integer : least);
     }
+}
+
+/* Writes the sums of the integers before each, beginning with sum, and returns that of all. */
+static uint32_t scan(const uint32_t *restrict integers, uint32_t count, uint32_t sum, uint32_t *restrict sums)
+{
+#pragma omp simd reduction(inscan, + : sum)
+    for (uint32_t i = 0; i < count; i++) {
+        sums[i] = sum;
+#pragma omp scan exclusive(sum)
+        sum += integers[i];
+    }
+    return sum;
+}
+
+static uint32_t total(const uint32_t *integers, uint32_t count, uint32_t sum)
+{
+#pragma omp simd reduction(+ : sum)
+    for (uint32_t i = 0; i < count; i++)
+        sum += integers[i];
+    return sum;
 }
 
 /* The exponent e for which the largest weight x 2^e is below 2^bits, and nearly reaches it. At most 126, so that 2^e is
@@ -62,12 +105,8 @@ row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, uint32_t si
     float factor = ldexpf(1.0f, exponent);
     for (uint32_t first = 0; first < size; first += PIECE) {
         uint32_t count = size - first < PIECE ? size - first : PIECE;
-        quantise(rgb + 3 * (size_t)first, weights + first, count, factor, integers);
-        for (uint32_t i = 0; i < count; i++) {
-            if (sums != NULL)
-                sums[first + i] = sum;
-            sum += integers[i];
-        }
+        quantise(weights + first, count, factor, integers);
+        sum = sums != NULL ? scan(integers, count, sum, sums + first) : total(integers, count, sum);
     }
     if (sums != NULL)
         sums[size] = sum;

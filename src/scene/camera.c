@@ -40,16 +40,27 @@ static helio_status check_numbers(const helio_camera *camera)
     return HELIO_OK;
 }
 
+/* The unit vector along a; zero where a is zero. A power of two brings a near 1 first, as the square of a tiny mesh's
+ * size would vanish. */
+static vec3 direction_of(vec3 a)
+{
+    float greatest = fmaxf(fabsf(a.x), fmaxf(fabsf(a.y), fabsf(a.z)));
+    if (!(greatest > 0.0f))
+        return a;
+    int exponent;
+    frexpf(greatest, &exponent);
+    return normalize((vec3){ldexpf(a.x, -exponent), ldexpf(a.y, -exponent), ldexpf(a.z, -exponent)});
+}
+
 helio_status camera_frame_create(const helio_camera *camera, float aspect, camera_frame *frame)
 {
     HELIO_TRY(check_aspect(aspect));
     HELIO_TRY(check_numbers(camera));
     vec3 eye = vec3_from(camera->eye);
-    vec3 view = subtract(vec3_from(camera->at), eye);
-    if (!(length(view) > 0.0f))
+    vec3 forward = direction_of(subtract(vec3_from(camera->at), eye));
+    if (!(length(forward) > 0.0f))
         return fail(HELIO_ERR_ARGUMENT, "the camera's eye and at are both %g,%g,%g; they must differ",
                     (double)camera->eye[0], (double)camera->eye[1], (double)camera->eye[2]);
-    vec3 forward = normalize(view);
     vec3 up = vec3_from(camera->up);
     float up_length = length(up);
     vec3 right = cross(forward, up_length > 0.0f ? scale(up, 1.0f / up_length) : up);

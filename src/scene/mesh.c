@@ -340,51 +340,6 @@ helio_status helio_mesh_create(helio_context *context, const helio_mesh_desc *de
     return HELIO_OK;
 }
 
-#ifdef HELIO_WITH_ASSIMP
-static helio_status load_mesh(helio_context *context, const char *path, helio_mesh **out)
-{
-    mesh_arrays arrays;
-    HELIO_TRY(mesh_import(context, path, &arrays));
-    helio_mesh_desc desc = {
-        .vertex_count = arrays.vertex_count,
-        .triangle_count = arrays.triangle_count,
-        .positions = arrays.positions,
-        .normals = arrays.normals,
-        .triangles = arrays.triangles,
-        .material_count = arrays.material_count,
-        .triangle_materials = arrays.triangle_materials,
-        .materials = arrays.materials,
-        .texture_coordinates = arrays.texture_coordinates,
-        .texture_count = arrays.texture_count,
-        .textures = arrays.textures,
-        .material_textures = arrays.material_textures,
-    };
-    helio_status status = helio_mesh_create(context, &desc, out);
-    mesh_arrays_release(context, &arrays);
-    if (status != HELIO_OK)
-        return fail(status, "%s: %s", path, helio_last_error());
-    return HELIO_OK;
-}
-#else
-static helio_status load_mesh(helio_context *context, const char *path, helio_mesh **out)
-{
-    (void)context;
-    (void)out;
-    return fail(HELIO_ERR_UNSUPPORTED, "%s cannot be read: this build has no assimp; build with HELIO_WITH_ASSIMP=ON",
-                path);
-}
-#endif
-
-helio_status helio_mesh_load(helio_context *context, const char *path, helio_mesh **out)
-{
-    if (out == NULL)
-        return fail(HELIO_ERR_ARGUMENT, "helio_mesh_load needs a place for the mesh");
-    *out = NULL;
-    if (context == NULL || path == NULL)
-        return fail(HELIO_ERR_ARGUMENT, "helio_mesh_load needs a context and a path");
-    return load_mesh(context, path, out);
-}
-
 void helio_mesh_destroy(helio_context *context, helio_mesh *mesh)
 {
     if (mesh == NULL)

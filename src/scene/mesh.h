@@ -36,8 +36,24 @@ typedef struct mesh_arrays {
     helio_material_textures *material_textures; /* [material_count], or NULL */
 } mesh_arrays;
 
-/* Reads a file by assimp; in a build without it these two do not exist. On failure arrays holds nothing. */
-helio_status mesh_import(helio_context *context, const char *path, mesh_arrays *arrays);
+/* What an importer is told. */
+typedef struct mesh_import_options {
+    uint64_t max_texture_pixels;     /* larger textures are left out */
+    void (*on_textures)(void *user); /* called when the file is read and only textures remain; may be NULL */
+    void *user;
+} mesh_import_options;
+
+/* Reads a file. On failure arrays holds nothing. */
+typedef helio_status (*mesh_importer)(helio_context *context, const char *path, const mesh_import_options *options,
+                                      mesh_arrays *arrays);
+
+/* The importer by assimp, for one thread at a time; in a build without assimp it does not exist. */
+helio_status mesh_import(helio_context *context, const char *path, const mesh_import_options *options,
+                         mesh_arrays *arrays);
+
 void mesh_arrays_release(helio_context *context, mesh_arrays *arrays);
+
+/* The same arrays as helio_mesh_create() takes them. They stay where they are. */
+helio_mesh_desc mesh_arrays_desc(const mesh_arrays *arrays);
 
 #endif

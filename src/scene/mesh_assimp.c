@@ -2,6 +2,7 @@
 #include "core/context.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "image/image.h"
 #include "scene/gzip.h"
 #include "scene/mesh_import.h"
 #include "scene/texture.h"
@@ -9,7 +10,7 @@
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
 #include <errno.h>
-#include <pthread.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -18,9 +19,6 @@
 
 /* assimp walks the tree of nodes by recursion, and so do we. */
 enum { MAX_DEPTH = 500 };
-
-/* assimp keeps one error text for the whole process. */
-static pthread_mutex_t assimp_mutex = PTHREAD_MUTEX_INITIALIZER;
 
 /* ---- the file as assimp's scene -------------------------------------------------------- */
 
@@ -62,19 +60,26 @@ static helio_status check_file(const char *path)
     return HELIO_OK;
 }
 
+/* In assimp's words, which may hold words of the file. */
+static helio_status fail_with_assimp(const char *path)
+{
+    char reason[512];
+    snprintf(reason, sizeof reason, "%s", aiGetErrorString());
+    image_make_printable(reason);
+    if (strstr(reason, "bad_alloc") != NULL || strstr(reason, "bad allocation") != NULL)
+        return fail(HELIO_ERR_MEMORY, "no memory to read %s", path);
+    return fail(HELIO_ERR_DATA, "%s cannot be read as a mesh: %s", path, reason);
+}
+
 static helio_status open_scene(helio_context *context, const char *path, const struct aiScene **scene)
 {
     HELIO_TRY(check_file(path));
     helio_status status = HELIO_OK;
-    pthread_mutex_lock(&assimp_mutex);
     if (file_has_extension(path, "gz"))
         *scene = import_gzip(context, path, &status);
     else
         *scene = aiImportFile(path, POST_PROCESSING);
-    if (*scene == NULL && status == HELIO_OK)
-        status = fail(HELIO_ERR_DATA, "%s cannot be read as a mesh: %s", path, aiGetErrorString());
-    pthread_mutex_unlock(&assimp_mutex);
-    return status;
+    return *scene == NULL && status == HELIO_OK ? fail_with_assimp(path) : status;
 }
 
 /* ---- flattening ------------------------------------------------------------------------ */
@@ -263,16 +268,17 @@ static helio_status allocate_arrays(helio_context *context, const flattener *f)
     return HELIO_OK;
 }
 
-static helio_status flatten_scene(helio_context *context, const char *path, flattener *f)
+static helio_status flatten_scene(const mesh_file *file, flattener *f)
 {
-    const mesh_file file = {.context = context, .path = path, .scene = f->scene, .arrays = f->arrays};
+    helio_context *context = file->context;
+    const char *path = file->path;
     if (f->scene->mRootNode == NULL)
         return fail(HELIO_ERR_DATA, "%s holds no triangles", path);
     if (flatten_tree(f) != HELIO_OK)
         return fail(HELIO_ERR_DATA, "%s cannot be used: %s", path, helio_last_error());
     if (f->triangles == 0)
         return fail(HELIO_ERR_DATA, "%s holds no triangles", path);
-    HELIO_TRY(import_materials(&file, f->uses));
+    HELIO_TRY(import_materials(file, f->uses));
     HELIO_TRY(allocate_arrays(context, f));
     f->fill = true;
     if (flatten_tree(f) != HELIO_OK)
@@ -283,32 +289,19 @@ static helio_status flatten_scene(helio_context *context, const char *path, flat
     return HELIO_OK;
 }
 
-helio_status mesh_import(helio_context *context, const char *path, mesh_arrays *arrays)
+helio_status mesh_import(helio_context *context, const char *path, const mesh_import_options *options,
+                         mesh_arrays *arrays)
 {
     *arrays = (mesh_arrays){0};
     const struct aiScene *scene;
     HELIO_TRY(open_scene(context, path, &scene));
     flattener f = {.scene = scene, .arrays = arrays};
     f.uses = context_allocate(context, scene->mNumMaterials, sizeof *f.uses);
-    helio_status status = f.uses ? flatten_scene(context, path, &f) : HELIO_ERR_MEMORY;
+    const mesh_file file = {context, path, options, scene, arrays};
+    helio_status status = f.uses ? flatten_scene(&file, &f) : HELIO_ERR_MEMORY;
     context_release(context, f.uses);
     aiReleaseImport(scene);
     if (status != HELIO_OK)
         mesh_arrays_release(context, arrays);
     return status;
-}
-
-void mesh_arrays_release(helio_context *context, mesh_arrays *arrays)
-{
-    context_release(context, arrays->positions);
-    context_release(context, arrays->normals);
-    context_release(context, arrays->triangles);
-    context_release(context, arrays->triangle_materials);
-    context_release(context, arrays->materials);
-    context_release(context, arrays->texture_coordinates);
-    context_release(context, arrays->material_textures);
-    for (uint32_t i = 0; i < arrays->texture_count; i++)
-        texture_release(context, &arrays->textures[i]);
-    context_release(context, arrays->textures);
-    *arrays = (mesh_arrays){0};
 }

@@ -12,6 +12,7 @@
 typedef struct mesh_file {
     helio_context *context;
     const char *path;
+    const mesh_import_options *options;
     const struct aiScene *scene;
     mesh_arrays *arrays;
 } mesh_file;

@@ -131,6 +131,8 @@ helio_status import_materials(const mesh_file *file, material_use *uses)
     texture_list *textures;
     HELIO_TRY(allocate_materials(file));
     HELIO_TRY(texture_list_create(file, &textures));
+    if (file->options->on_textures != NULL)
+        file->options->on_textures(file->options->user);
     helio_status status = fill_materials(file, textures, uses);
     texture_list_destroy(textures);
     return status;

@@ -93,6 +93,13 @@ static helio_status find_file(const char *mesh_path, const char *name, char path
     return HELIO_OK;
 }
 
+/* What the next texture may take. */
+static uint64_t bytes_left(const texture_list *list)
+{
+    uint64_t left = TEXTURE_MAX_BYTES - list->bytes, pixels = list->file->options->max_texture_pixels;
+    return pixels < left / 4 ? 4 * pixels : left;
+}
+
 static helio_status read_file(const texture_list *list, const char *name, helio_texture *texture)
 {
     helio_context *context = list->file->context;
@@ -101,7 +108,7 @@ static helio_status read_file(const texture_list *list, const char *name, helio_
     size_t size;
     HELIO_TRY(find_file(list->file->path, name, path));
     HELIO_TRY(file_read(context, path, TEXTURE_MAX_BYTES, &bytes, &size));
-    helio_status status = texture_decode(context, path, bytes, size, TEXTURE_MAX_BYTES - list->bytes, texture);
+    helio_status status = texture_decode(context, path, bytes, size, bytes_left(list), texture);
     context_release(context, bytes);
     return status;
 }
@@ -116,7 +123,7 @@ static helio_status read_embedded(const texture_list *list, const struct aiTextu
     if (from->mHeight != 0 || from->pcData == NULL)
         return fail(HELIO_ERR_DATA, "%s is neither PNG nor JPEG", name);
     return texture_decode(list->file->context, name, (const unsigned char *)from->pcData, from->mWidth,
-                          TEXTURE_MAX_BYTES - list->bytes, texture);
+                          bytes_left(list), texture);
 }
 
 /* Gives the source a texture of ours. HELIO_ERR_MEMORY is the only failure, all others are warnings. */

@@ -138,27 +138,27 @@ static helio_material material_at(const helio_scene *scene, const rays_hit *hit)
     return material;
 }
 
-static bool intersect_mesh(const helio_scene *scene, vec3 origin, vec3 direction, scene_hit *hit)
+/* Turns what a ray found into what it saw. false for a triangle without area, which none should find. */
+static bool resolve_mesh(const helio_scene *scene, vec3 direction, const rays_hit *found, scene_hit *hit)
 {
     const helio_mesh *mesh = scene->mesh;
-    rays_hit found;
     vec3 face;
-    if (!rays_intersect(scene->rays, origin, direction, &found) || !mesh_triangle_normal(mesh, found.triangle, &face))
+    if (!mesh_triangle_normal(mesh, found->triangle, &face))
         return false;
-    const uint32_t *corners = mesh->triangles + 3 * (size_t)found.triangle;
+    const uint32_t *corners = mesh->triangles + 3 * (size_t)found->triangle;
     if (dot(face, direction) > 0.0f)
         face = scale(face, -1.0f);
-    vec3 smooth = interpolate(mesh->normals, corners, &found);
+    vec3 smooth = interpolate(mesh->normals, corners, found);
     float size = length(smooth);
     smooth = size > 1e-6f ? scale(smooth, 1.0f / size) : face;
     if (dot(smooth, face) < 0.0f)
         smooth = scale(smooth, -1.0f);
     *hit = (scene_hit){
-        .distance = found.distance,
-        .position = interpolate(mesh->positions, corners, &found), /* nearer to the surface than along the ray */
+        .distance = found->distance,
+        .position = interpolate(mesh->positions, corners, found), /* nearer to the surface than along the ray */
         .normal = smooth,
         .geometric_normal = face,
-        .material = material_at(scene, &found),
+        .material = material_at(scene, found),
     };
     return true;
 }
@@ -185,14 +185,26 @@ static bool intersect_ground(const helio_scene *scene, vec3 origin, vec3 directi
 
 bool scene_intersect(const helio_scene *scene, vec3 origin, vec3 direction, scene_hit *hit)
 {
-    if (scene->ground == HELIO_GROUND_NONE)
-        return intersect_mesh(scene, origin, direction, hit);
+    bool met;
+    scene_intersect_many(scene, origin, 1, &direction.x, &direction.y, &direction.z, hit, &met);
+    return met;
+}
+
+void scene_intersect_many(const helio_scene *scene, vec3 origin, uint32_t count, const float *x, const float *y,
+                          const float *z, scene_hit *hits, bool *met)
+{
     /* The whole mesh stands on the plane. So from below the plane comes first, and from above the mesh does, however
      * close they are: no rounding can mix them up. */
-    if (origin.y < scene->ground_height)
-        return direction.y > 0.0f && intersect_ground(scene, origin, direction, hit);
-    return intersect_mesh(scene, origin, direction, hit) ||
-           (direction.y < 0.0f && intersect_ground(scene, origin, direction, hit));
+    bool has_ground = scene->ground != HELIO_GROUND_NONE, below = has_ground && origin.y < scene->ground_height;
+    rays_hit found[SCENE_RAYS];
+    if (!below)
+        rays_intersect_many(scene->rays, origin, count, x, y, z, found);
+    for (uint32_t i = 0; i < count; i++) {
+        vec3 direction = {x[i], y[i], z[i]};
+        bool towards_ground = has_ground && (below ? direction.y > 0.0f : direction.y < 0.0f);
+        met[i] = (!below && found[i].triangle != RAYS_NOTHING && resolve_mesh(scene, direction, &found[i], &hits[i])) ||
+                 (towards_ground && intersect_ground(scene, origin, direction, &hits[i]));
+    }
 }
 
 /* ---- shadows --------------------------------------------------------------------------- */
@@ -211,34 +223,71 @@ static vec3 offset_origin(const helio_scene *scene, vec3 position, vec3 normal)
     return add_scaled(position, normal, rounding * error);
 }
 
-/* Does the ray stay clear of the sphere around the mesh? Most rays from the ground do. From FAR radii away all do: the
- * mesh is smaller than the roundings of a direction there, and a ray tracer would search all of it for nothing. */
-static bool passes_by(const helio_scene *scene, vec3 origin, vec3 direction)
+/* The sphere around the mesh, as seen from a point. */
+typedef struct sphere_view {
+    double x, y, z, squared; /* from the point to the centre */
+    double radius_squared;
+    bool inside, far;
+} sphere_view;
+
+/* From FAR radii away, all rays count as passing by: the mesh is smaller than the roundings of a direction there, and a
+ * ray tracer would search all of it for nothing. */
+static sphere_view view_sphere(const helio_scene *scene, vec3 origin)
 {
     const double FAR = 1e7;
-    double x = scene->centre[0] - (double)origin.x, dx = (double)direction.x;
-    double y = scene->centre[1] - (double)origin.y, dy = (double)direction.y;
-    double z = scene->centre[2] - (double)origin.z, dz = (double)direction.z;
-    double squared = x * x + y * y + z * z, along = x * dx + y * dy + z * dz;
-    if (squared <= scene->radius_squared)
-        return false;
-    if (along <= 0.0 || squared > FAR * FAR * scene->radius_squared)
-        return true;
-    return squared - along * along / (dx * dx + dy * dy + dz * dz) > 1.001 * scene->radius_squared;
+    sphere_view view = {
+        .x = scene->centre[0] - (double)origin.x,
+        .y = scene->centre[1] - (double)origin.y,
+        .z = scene->centre[2] - (double)origin.z,
+        .radius_squared = scene->radius_squared,
+    };
+    view.squared = view.x * view.x + view.y * view.y + view.z * view.z;
+    view.inside = view.squared <= view.radius_squared;
+    view.far = view.squared > FAR * FAR * view.radius_squared;
+    return view;
+}
+
+/* Does the ray stay clear of the sphere? Most rays from the ground do. */
+static bool passes_by(const sphere_view *view, vec3 direction)
+{
+    if (view->inside || view->far)
+        return view->far;
+    double x = (double)direction.x, y = (double)direction.y, z = (double)direction.z;
+    double along = view->x * x + view->y * y + view->z * z;
+    return along <= 0.0 || view->squared - along * along / (x * x + y * y + z * z) > 1.001 * view->radius_squared;
 }
 
 bool scene_occluded(const helio_scene *scene, vec3 position, vec3 geometric_normal, vec3 direction)
 {
-    if (dot(geometric_normal, direction) <= 0.0f)
-        return true;
-    if (scene->ground != HELIO_GROUND_NONE) {
-        /* Seen points lie on the plane's underside, where only open space is left, or above it, where it hides all
-         * light from below. Heights are not compared: the lowest points of the mesh are on the plane. */
-        bool underside = geometric_normal.y == -1.0f && position.y == scene->ground_height;
-        if (direction.y < 0.0f)
-            return !underside;
+    bool visible;
+    scene_find_visible(scene, position, geometric_normal, 1, &direction.x, &direction.y, &direction.z, &visible);
+    return !visible;
+}
+
+void scene_find_visible(const helio_scene *scene, vec3 position, vec3 geometric_normal, uint32_t count, const float *x,
+                        const float *y, const float *z, bool *visible)
+{
+    /* Seen points lie on the plane's underside, where only open space is left, or above it, where it hides all light
+     * from below. Heights are not compared: the lowest points of the mesh are on the plane. */
+    bool has_ground = scene->ground != HELIO_GROUND_NONE;
+    bool underside = has_ground && geometric_normal.y == -1.0f && position.y == scene->ground_height;
+    sphere_view sphere = view_sphere(scene, position);
+    float ray_x[SCENE_RAYS], ray_y[SCENE_RAYS], ray_z[SCENE_RAYS];
+    uint32_t index[SCENE_RAYS], ray_count = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        vec3 direction = {x[i], y[i], z[i]};
+        bool below = has_ground && direction.y < 0.0f;
+        visible[i] = dot(geometric_normal, direction) > 0.0f && (!below || underside);
+        if (!visible[i] || below || passes_by(&sphere, direction))
+            continue;
+        ray_x[ray_count] = direction.x;
+        ray_y[ray_count] = direction.y;
+        ray_z[ray_count] = direction.z;
+        index[ray_count++] = i;
     }
-    if (passes_by(scene, position, direction))
-        return false;
-    return rays_occluded(scene->rays, offset_origin(scene, position, geometric_normal), direction);
+    bool occluded[SCENE_RAYS];
+    rays_occluded_many(scene->rays, offset_origin(scene, position, geometric_normal), ray_count, ray_x, ray_y, ray_z,
+                       occluded);
+    for (uint32_t i = 0; i < ray_count; i++)
+        visible[index[i]] = !occluded[i];
 }

@@ -33,12 +33,20 @@ typedef struct scene_hit {
     bool is_ground;
 } scene_hit;
 
-/* What a ray meets first, and whether it meets anything; direction has unit length. The ground is seen from both sides.
- */
-bool scene_intersect(const helio_scene *scene, vec3 origin, vec3 direction, scene_hit *hit);
+enum { SCENE_RAYS = 64 }; /* at most in one call */
 
-/* Is the light from this direction, of unit length, kept from a point that scene_intersect() found? Light from behind
- * the surface is. */
+/* What rays from one origin meet first, and whether they meet anything; directions have unit length, in three arrays
+ * [count]. hits: [count], written where met[i]. The ground is seen from both sides. */
+void scene_intersect_many(const helio_scene *scene, vec3 origin, uint32_t count, const float *x, const float *y,
+                          const float *z, scene_hit *hits, bool *met);
+
+/* Does light from these directions, of unit length, reach a point that scene_intersect() found? Light from behind the
+ * surface does not. visible: [count]. */
+void scene_find_visible(const helio_scene *scene, vec3 position, vec3 geometric_normal, uint32_t count, const float *x,
+                        const float *y, const float *z, bool *visible);
+
+/* The same for a single direction. */
+bool scene_intersect(const helio_scene *scene, vec3 origin, vec3 direction, scene_hit *hit);
 bool scene_occluded(const helio_scene *scene, vec3 position, vec3 geometric_normal, vec3 direction);
 
 #endif

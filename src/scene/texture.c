@@ -86,43 +86,28 @@ helio_status texture_check(const helio_texture *texture)
     return HELIO_OK;
 }
 
-static uint8_t to_byte(float value)
-{
-    return (uint8_t)lrintf(255.0f * value);
-}
-
-static helio_status copy_texels(helio_context *context, const helio_image *image, helio_texture *texture)
-{
-    size_t count = (size_t)image->width * image->height;
-    uint8_t *rgba = context_allocate(context, count, 4);
-    if (rgba == NULL)
-        return HELIO_ERR_MEMORY;
-    for (size_t i = 0; i < count; i++) {
-        for (size_t c = 0; c < 3; c++)
-            rgba[4 * i + c] = to_byte(image->rgb[3 * i + c]);
-        rgba[4 * i + 3] = image->alpha ? to_byte(image->alpha[i]) : 255;
-    }
-    texture->width = image->width;
-    texture->height = image->height;
-    texture->rgba = rgba;
-    return HELIO_OK;
-}
-
 helio_status texture_decode(helio_context *context, const char *name, const unsigned char *bytes, size_t size,
                             uint64_t max_bytes, helio_texture *texture)
 {
+    uint8_t *texels = NULL;
     const image_file file = {.context = context,
                              .path = name,
                              .bytes = bytes,
                              .size = size,
                              .max_pixels = max_bytes / 4,
                              .max_edge = TEXTURE_MAX_EDGE,
-                             .keep_encoding = true};
+                             .texels = &texels};
     helio_image *image;
-    HELIO_TRY(image_decode(&file, &image));
-    helio_status status = copy_texels(context, image, texture);
+    helio_status status = image_decode(&file, &image);
+    if (status != HELIO_OK) {
+        context_release(context, texels);
+        return status;
+    }
+    texture->width = image->width;
+    texture->height = image->height;
+    texture->rgba = texels;
     helio_image_destroy(context, image);
-    return status;
+    return HELIO_OK;
 }
 
 void texture_release(helio_context *context, helio_texture *texture)

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: MIT */
+#include "output_file.h"
+
+#include "message.h"
+
+#include <errno.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* Is this input the file that would be replaced, by whatever name? */
+static bool is_same_file(const char *input, const struct stat *output)
+{
+    struct stat status;
+    return input[0] != 0 && stat(input, &status) == 0 && status.st_dev == output->st_dev &&
+           status.st_ino == output->st_ino;
+}
+
+int output_file_check(const char *option, const char *path, const char *const *inputs)
+{
+    struct stat existing;
+    bool exists = stat(path, &existing) == 0;
+    for (; exists && *inputs != NULL; inputs++)
+        if (is_same_file(*inputs, &existing))
+            return message_failure("%s would replace an input; give --%s another path", path, option);
+    if (!exists && errno != ENOENT)
+        return message_failure("%s cannot be written: %s; give --%s another path", path, strerror(errno), option);
+    if (exists && !S_ISREG(existing.st_mode))
+        return message_failure("%s is %s; give --%s the name of a file", path,
+                               S_ISDIR(existing.st_mode) ? "a directory" : "a device or pipe, which cannot be replaced",
+                               option);
+    char directory[4096] = ".";
+    const char *slash = strrchr(path, '/');
+    if (slash != NULL && (size_t)(slash - path) + 1 < sizeof directory)
+        snprintf(directory, sizeof directory, "%.*s", (int)(slash - path) + 1, path);
+    if (access(directory, F_OK) != 0)
+        return message_failure("%s cannot be written: there is no folder %s; make it, or give --%s another path", path,
+                               directory, option);
+    if (access(directory, W_OK | X_OK) != 0)
+        return message_failure("%s cannot be written: no permission to write in %s; give --%s another path", path,
+                               directory, option);
+    return EXIT_CODE_OK;
+}

@@ -1,0 +1,58 @@
+# Fuzz targets: with HELIO_FUZZ (clang only) as programs for libFuzzer, fuzz/fuzz_<noun>, which scripts/fuzz.sh runs; in
+# a build with tests as programs that replay the corpus, with any compiler.
+
+if(HELIO_FUZZ)
+    if(NOT CMAKE_C_COMPILER_ID MATCHES "Clang")
+        message(FATAL_ERROR "HELIO_FUZZ needs clang, which brings libFuzzer: set CMAKE_C_COMPILER=clang.")
+    endif()
+    # With -O1 clang tells of each loop that it was asked to vectorise and did not.
+    target_compile_options(helio_flags INTERFACE -fsanitize=fuzzer-no-link -Wno-pass-failed)
+endif()
+
+add_library(fuzz_support OBJECT fuzz/support.c)
+target_include_directories(fuzz_support PRIVATE fuzz include src)
+target_link_libraries(fuzz_support PRIVATE helio_flags)
+
+add_library(fuzz_replay OBJECT fuzz/replay.c)
+target_include_directories(fuzz_replay PRIVATE fuzz include)
+target_link_libraries(fuzz_replay PRIVATE helio_flags)
+
+# Makes a program of fuzz/fuzz_<noun>.c and the files that follow.
+function(heliostat_fuzz_program program noun)
+    add_executable(${program} fuzz/fuzz_${noun}.c ${ARGN} $<TARGET_OBJECTS:fuzz_support>)
+    set_target_properties(${program} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/fuzz")
+    target_include_directories(${program} PRIVATE fuzz cli include src)
+    target_link_libraries(${program} PRIVATE heliostat_internal helio_flags ${FEATURE_LIBRARIES})
+endfunction()
+
+function(heliostat_fuzz noun)
+    if(HELIO_FUZZ)
+        heliostat_fuzz_program(fuzz_${noun} ${noun} ${ARGN})
+        target_link_options(fuzz_${noun} PRIVATE -fsanitize=fuzzer)
+    endif()
+    if(BUILD_TESTING)
+        heliostat_fuzz_program(replay_${noun} ${noun} ${ARGN} $<TARGET_OBJECTS:fuzz_replay>)
+        add_test(NAME replay_${noun} COMMAND replay_${noun} ${PROJECT_SOURCE_DIR}/fuzz/corpus/${noun})
+        set_tests_properties(replay_${noun} PROPERTIES LABELS fuzz TIMEOUT 300)
+    endif()
+endfunction()
+
+heliostat_fuzz(radiance)
+heliostat_fuzz(pfm)
+if(HELIO_WITH_OPENEXR)
+    heliostat_fuzz(exr)
+endif()
+if(HELIO_WITH_PNG)
+    heliostat_fuzz(png)
+endif()
+if(HELIO_WITH_JPEG)
+    heliostat_fuzz(jpeg)
+endif()
+heliostat_fuzz(environment)
+heliostat_fuzz(mesh)
+if(HELIO_WITH_ASSIMP)
+    heliostat_fuzz(receipt)
+endif()
+heliostat_fuzz(specification cli/number.c)
+heliostat_fuzz(options fuzz/messages.c cli/number.c cli/option_table.c cli/options.c cli/suggestion.c)
+heliostat_fuzz(source fuzz/messages.c cli/asset.c cli/environment_source.c cli/number.c)

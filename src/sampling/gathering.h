@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT
+ * gathering.h - the light samples of one point on their way to an estimate: what is known of the point, and blocks of
+ * samples with what they contribute. */
+#ifndef HELIOSTAT_SRC_GATHERING_H
+#define HELIOSTAT_SRC_GATHERING_H
+
+#include "sampling/brdf.h"
+#include "sampling/pools.h"
+
+#include <stdalign.h>
+
+enum {
+    BLOCK_SAMPLES = 64,
+    BLOCK_STRIDE = BLOCK_SAMPLES + POOL_PADDING, /* kernels write whole registers */
+};
+
+/* What is known about a point before its samples. All directions are in the map's space. */
+typedef struct gathering {
+    const helio_pools *pools;
+    const helio_environment *environment;
+    brdf surface;  /* what reflects */
+    brdf proposal; /* what draws surface samples: the surface, or a diffuse stand-in for COSINE */
+    brdf_axes proposal_axes;
+    vec3 geometric_normal;
+    helio_counts counts;
+    float expected_in_face[CUBE_FACES]; /* sum_k m_k pdf_k over light techniques is this x the face's density */
+    uint32_t windows[CUBE_FACES];
+    uint32_t surface_seed;
+} gathering;
+
+/* Samples side by side, whatever technique took them, and what each contributes. */
+typedef struct sample_block {
+    uint32_t count;
+    /* As in the pools, but with sum_k m_k pdf_k over the light techniques, 1/sr, as density. */
+    alignas(64) float samples[SAMPLE_ARRAYS][BLOCK_STRIDE];
+    /* Radiance x BRDF x cosine / density, 0 below a horizon. [BLOCK_STRIDE], 0 from count on to the end of a register.
+     */
+    alignas(64) float red[BLOCK_STRIDE];
+    alignas(64) float green[BLOCK_STRIDE];
+    alignas(64) float blue[BLOCK_STRIDE];
+    alignas(64) float density[BLOCK_STRIDE]; /* sum_k m_k pdf_k over all techniques, 1/sr */
+} sample_block;
+
+/* Sum of a block. */
+typedef struct block_sum {
+    float rgb[3];
+    uint32_t useful; /* samples that contribute */
+} block_sum;
+
+#endif

@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Samples of a pool: scrambled points, and the inversion of the tables at them. Several searches go on at once, one
+ * step of each after the other, so that they wait for memory together. */
+#include "core/random.h"
+#include "sampling/kernels.h"
+
+enum { GROUP = 32 }; /* samples drawn together */
+
+/* Searches that go on together. fraction is that of tables_invert(): in x, out where x lies inside of the cell. */
+typedef struct search_group {
+    uint32_t fraction[GROUP];
+    const uint32_t *sums[GROUP]; /* [length + 1] each */
+    uint32_t cell[GROUP];
+} search_group;
+
+/* tables_invert() for each: as many steps for all, without branches. */
+static void invert_group(search_group *group, uint32_t count, uint32_t length)
+{
+    uint32_t whole[GROUP], highest = 1;
+    for (uint32_t i = 0; i < count; i++) {
+        whole[i] = (uint32_t)(((uint64_t)group->fraction[i] * group->sums[i][length]) >> 32);
+        group->cell[i] = 0;
+    }
+    while (highest < length)
+        highest *= 2;
+    for (uint32_t step = highest / 2; step > 0; step /= 2)
+        for (uint32_t i = 0; i < count; i++) {
+            uint32_t next = group->cell[i] + step;
+            next = next < length ? next : length; /* where the sum is above whole */
+            group->cell[i] = group->sums[i][next] <= whole[i] ? next : group->cell[i];
+        }
+    for (uint32_t i = 0; i < count; i++)
+        group->fraction[i] = tables_fraction_within(group->sums[i], length, group->cell[i], group->fraction[i]);
+}
+
+/* The face of each sample: the pool's, or for the whole map by the sums over faces, which leaves the row's fraction. */
+static void choose_faces(const helio_pools *pools, uint32_t pool, uint32_t count, uint32_t *fractions, uint32_t *faces)
+{
+    bool whole = pools->parts.light == STRATEGY_LIGHT_WHOLE;
+    for (uint32_t i = 0; i < count; i++)
+        faces[i] = whole ? tables_invert(pools->tables->faces, CUBE_FACES, fractions[i], &fractions[i]) : pool;
+}
+
+static void store_sample(helio_pools *pools, uint32_t pool, uint32_t index, const helio_table_sample *sample)
+{
+    float *to = pools_array(pools, pool, SAMPLE_X) + index;
+    to[SAMPLE_X * pools->stride] = sample->direction[0];
+    to[SAMPLE_Y * pools->stride] = sample->direction[1];
+    to[SAMPLE_Z * pools->stride] = sample->direction[2];
+    to[SAMPLE_RED * pools->stride] = sample->radiance[0];
+    to[SAMPLE_GREEN * pools->stride] = sample->radiance[1];
+    to[SAMPLE_BLUE * pools->stride] = sample->radiance[2];
+    to[SAMPLE_DENSITY * pools->stride] = sample->density;
+}
+
+static void draw_group(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed)
+{
+    const helio_tables *tables = pools->tables;
+    const uint32_t size = tables->size, seed_x = dimension_seed(seed, 0), seed_y = dimension_seed(seed, 1);
+    search_group rows, columns;
+    uint32_t faces[GROUP];
+#pragma omp simd
+    for (uint32_t i = 0; i < count; i++) {
+        columns.fraction[i] = owen_scramble_reversed(first + i, seed_x);
+        rows.fraction[i] = owen_scramble_reversed(pascal_transform(first + i), seed_y);
+    }
+    choose_faces(pools, pool, count, rows.fraction, faces);
+    for (uint32_t i = 0; i < count; i++)
+        rows.sums[i] = tables_face(tables, faces[i]).marginal;
+    invert_group(&rows, count, size);
+    for (uint32_t i = 0; i < count; i++)
+        columns.sums[i] = tables_face(tables, faces[i]).rows + (size_t)rows.cell[i] * (size + 1);
+    invert_group(&columns, count, size);
+    for (uint32_t i = 0; i < count; i++) {
+        helio_table_sample sample;
+        tables_sample_at(tables, faces[i], rows.cell[i], rows.fraction[i], columns.cell[i], columns.fraction[i],
+                         &sample);
+        if (pools->parts.light == STRATEGY_LIGHT_WHOLE)
+            sample.density *= tables_face_probability(tables, faces[i]);
+        store_sample(pools, pool, first + i, &sample);
+    }
+}
+
+void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed)
+{
+    for (uint32_t done = 0; done < count; done += GROUP)
+        draw_group(pools, pool, first + done, count - done < GROUP ? count - done : GROUP, seed);
+}
+
+/* Whole registers, past the last sample too: what is too much is overwritten by the next samples, or never read. */
+void KERNEL(take_pool)(const gathering *g, uint32_t pool, uint32_t first, uint32_t count, sample_block *block)
+{
+    const float expected = g->counts.expected[pool];
+    const float *const from = pools_array(g->pools, pool, SAMPLE_X) + first;
+    const float *const x = from, *const y = x + g->pools->stride, *const z = y + g->pools->stride;
+    const float *const red = z + g->pools->stride, *const green = red + g->pools->stride;
+    const float *const blue = green + g->pools->stride, *const density = blue + g->pools->stride;
+    float *restrict to = block->samples[SAMPLE_X] + block->count;
+    for (size_t chunk = 0; chunk < count; chunk += HELIO_LANES) {
+#pragma omp simd
+        for (size_t i = chunk; i < chunk + HELIO_LANES; i++) {
+            to[SAMPLE_X * BLOCK_STRIDE + i] = x[i];
+            to[SAMPLE_Y * BLOCK_STRIDE + i] = y[i];
+            to[SAMPLE_Z * BLOCK_STRIDE + i] = z[i];
+            to[SAMPLE_RED * BLOCK_STRIDE + i] = red[i];
+            to[SAMPLE_GREEN * BLOCK_STRIDE + i] = green[i];
+            to[SAMPLE_BLUE * BLOCK_STRIDE + i] = blue[i];
+            to[SAMPLE_DENSITY * BLOCK_STRIDE + i] = density[i] * expected;
+        }
+    }
+    block->count += count;
+}
