@@ -22,6 +22,7 @@ foreach(isa IN LISTS KERNEL_ISAS)
     add_library(bench_fma_${isa} OBJECT cli/bench_fma.c)
     target_compile_definitions(bench_fma_${isa} PRIVATE HELIO_ISA=${isa} HELIO_LANES=${KERNEL_LANES_${isa}})
     target_compile_options(bench_fma_${isa} PRIVATE $<$<CONFIG:Release>:-O3> ${KERNEL_OPTIONS_${isa}} -ffp-contract=fast)
+    target_include_directories(bench_fma_${isa} PRIVATE include) # for the analyzer, which reads error.h first
     target_link_libraries(bench_fma_${isa} PRIVATE helio_flags)
     list(APPEND PEAK_OBJECTS $<TARGET_OBJECTS:bench_fma_${isa}>)
 endforeach()

@@ -3,8 +3,6 @@
 
 #include "core/context.h"
 
-#include <string.h>
-
 helio_status hits_create(helio_context *context, const helio_scene *scene, uint32_t width, uint32_t height,
                          struct hits *hits)
 {
@@ -28,7 +26,15 @@ void hits_destroy(helio_context *context, struct hits *hits)
     *hits = (struct hits){0};
 }
 
+static bool is_same(vec3 a, vec3 b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
 bool hits_belong_to(const struct hits *hits, const camera_frame *camera)
 {
-    return hits->complete && memcmp(&hits->camera, camera, sizeof *camera) == 0;
+    const camera_frame *own = &hits->camera;
+    return hits->complete && is_same(own->eye, camera->eye) && is_same(own->forward, camera->forward) &&
+           is_same(own->right, camera->right) && is_same(own->up, camera->up) &&
+           own->tan_half_fov == camera->tan_half_fov && own->aspect == camera->aspect;
 }

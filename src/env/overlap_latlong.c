@@ -278,7 +278,7 @@ static great_circle pole_circle(double offset, bool highest_at_x)
 static stop pole_stop(const overlap_geometry *geometry, double x, double z)
 {
     double position = geometry->map_width * (0.5 - atan2(x, z) / (2 * PI)), scale_by = 1.0 / sqrt(x * x + z * z);
-    position += position < geometry->map_width / 2 ? geometry->map_width : 0;
+    position += position < 0.5 * geometry->map_width ? geometry->map_width : 0;
     return (stop){position, {z * scale_by, x * scale_by}};
 }
 
@@ -294,9 +294,11 @@ static void add_pole_stops(const overlap_geometry *geometry, const pole_texel *t
     for (int i = 0; i < 4; i++)
         if (texel->x[i / 2] != 0 || texel->z[i % 2] != 0)
             add_stop(outline, texel->corners[i / 2][i % 2]);
+    /* At most one corner of the four is the pole itself. */
+    /* cppcheck-suppress negativeIndex */
     double first = outline->stops[0].position, last = outline->stops[outline->stop_count - 1].position;
     for (uint32_t i = 0; i < 5; i++) {
-        double position = (2.0 + i) * (geometry->map_width / 4);
+        double position = (2.0 + i) * 0.25 * geometry->map_width;
         if (holds_pole(texel) || (position > first && position < last))
             add_stop(outline, (stop){position, axes[i]});
     }

@@ -75,7 +75,7 @@ static float weigh_pools(const helio_pools *pools, vec3 normal, bool no_beta, fl
 static void expect_counts(const helio_pools *pools, const helio_estimate_desc *desc, vec3 normal,
                           float expected[TECHNIQUES])
 {
-    float samples = (float)desc->samples, weights[CUBE_FACES];
+    float samples = (float)desc->samples, weights[CUBE_FACES] = {0};
     memset(expected, 0, TECHNIQUES * sizeof *expected);
     if (pools->count == 0) {
         expected[TECHNIQUE_SURFACE] = samples;
