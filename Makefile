@@ -42,10 +42,11 @@ san: dependencies-test build-asan/build.ninja
 	@cmake --build build-asan
 	@cd build-asan && $(CTEST) --label-exclude long
 
-# What shares data between threads, and by test_cli whole pictures: test_render would take ten times as long.
+# What shares data between threads, and by test_frame and test_cli whole pictures: test_render would take ten times as
+# long.
 tsan: dependencies-test build-tsan/build.ninja
 	@cmake --build build-tsan
-	@cd build-tsan && $(CTEST) --tests-regex '^test_(core|environment|tables|pools|hostile|cli)$$'
+	@cd build-tsan && $(CTEST) --tests-regex '^test_(core|environment|tables|pools|isa|rays|frame|hostile|bench|cli)$$'
 
 # Each target for so long, or one of them alone; docs/fuzzing.md tells more.
 fuzz: dependencies-ci build-fuzz/build.ninja

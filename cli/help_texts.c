@@ -69,6 +69,8 @@ const help_section help_exit_codes = {"Exit status", exit_codes, COUNT(exit_code
 static const help_entry variables[] = {
     {"HELIOSTAT_ASSETS", "folder that is searched for the map and the dragon that come with heliostat, in place of the "
                          "usual ones"},
+    {"HELIOSTAT_ISA", "instruction set that the kernels use, in place of the best that the machine has: scalar, sse2, "
+                      "avx2 or avx512 (see heliostat info)"},
 };
 const help_section help_variables = {"Environment variables", variables, COUNT(variables)};
 

@@ -53,18 +53,19 @@ helio_status estimate_resolve(const helio_pools *pools, const helio_estimate_des
 
 /* ---- counts ---- */
 
-/* What the pools are worth to a point: beta_f x flux_f for faces. Returns the sum. */
-static float weigh_pools(const helio_pools *pools, vec3 normal, bool no_beta, float weights[CUBE_FACES])
+/* What the pools are worth to a point: beta_f x flux_f for faces. Returns the sum. In double, as the flux of a dark map
+ * may be less than a float can hold. */
+static double weigh_pools(const helio_pools *pools, vec3 normal, bool no_beta, double weights[CUBE_FACES])
 {
     const helio_tables *tables = pools->tables;
     if (pools->parts.light == STRATEGY_LIGHT_WHOLE)
-        return weights[0] = tables->faces[CUBE_FACES] != 0 ? 1.0f : 0.0f;
-    float total = 0.0f;
-    strategy_betas(normal, weights);
+        return weights[0] = tables->faces[CUBE_FACES] != 0 ? 1.0 : 0.0;
+    float betas[CUBE_FACES];
+    double total = 0.0;
+    strategy_betas(normal, betas);
     for (int face = 0; face < CUBE_FACES; face++) {
-        if (no_beta)
-            weights[face] = weights[face] > 0.0f ? 1.0f : 0.0f;
-        weights[face] *= (float)tables->flux[face];
+        double beta = no_beta && betas[face] > 0.0f ? 1.0 : (double)betas[face];
+        weights[face] = beta * tables->flux[face];
         total += weights[face];
     }
     return total;
@@ -75,18 +76,20 @@ static float weigh_pools(const helio_pools *pools, vec3 normal, bool no_beta, fl
 static void expect_counts(const helio_pools *pools, const helio_estimate_desc *desc, vec3 normal,
                           float expected[TECHNIQUES])
 {
-    float samples = (float)desc->samples, weights[CUBE_FACES] = {0};
+    float samples = (float)desc->samples;
+    double weights[CUBE_FACES] = {0};
     memset(expected, 0, TECHNIQUES * sizeof *expected);
     if (pools->count == 0) {
         expected[TECHNIQUE_SURFACE] = samples;
         return;
     }
-    float total = weigh_pools(pools, normal, desc->no_beta, weights);
-    if (!(total > 0.0f))
+    double total = weigh_pools(pools, normal, desc->no_beta, weights);
+    if (!(total > 0.0))
         return;
     float by_surface = pools->parts.surface != STRATEGY_SURFACE_NONE ? samples * desc->brdf_share : 0.0f;
+    double share = (double)(samples - by_surface) / total;
     for (uint32_t k = 0; k < pools->count; k++)
-        expected[k] = weights[k] * ((samples - by_surface) / total);
+        expected[k] = (float)(weights[k] * share);
     expected[TECHNIQUE_SURFACE] = by_surface;
 }
 

@@ -45,6 +45,9 @@ typedef struct kernel_set {
 const kernel_set *kernels_of(isa set);
 
 #ifdef HELIO_ISA
+_Static_assert(HELIO_LANES <= POOL_PADDING && BLOCK_SAMPLES % HELIO_LANES == 0,
+               "kernels read and write whole registers, also past the last sample");
+
 row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, uint32_t size, uint32_t *sums);
 void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
 void KERNEL(take_pool)(const gathering *g, uint32_t pool, uint32_t first, uint32_t count, sample_block *block);

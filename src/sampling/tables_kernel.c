@@ -5,10 +5,6 @@
 #include "core/vector.h"
 #include "sampling/kernels.h"
 
-#include <string.h>
-
-row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, uint32_t size, uint32_t *sums);
-
 enum { PIECE = 256 }; /* texels from weights to sums at a time, so that the integers stay in the nearest cache */
 
 /* A texel that is lit weighs at least this much, the smallest float that no machine flushes to zero. */
@@ -25,37 +21,29 @@ static inline float weigh(const float *texel, float relative_solid_angle)
     return weight > least ? weight : least;
 }
 
-static inline int32_t float_bits(float x)
-{
-    int32_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    return bits;
-}
-
 /* The weights of a row, and the largest of them. The bits of floats that are not negative are ordered like the floats,
  * and compilers are freer to reorder the maximum of integers. */
 static float weigh_texels(const float *restrict rgb, const float *restrict solid_angles, uint32_t size,
                           float *restrict weights)
 {
-    float largest, quarter_texels = 0.25f * (float)size * (float)size;
+    float quarter_texels = 0.25f * (float)size * (float)size;
     int32_t largest_bits = 0;
     if (solid_angles == NULL) {
 #pragma omp simd reduction(max : largest_bits)
         for (uint32_t i = 0; i < size; i++) {
             weights[i] = weigh(rgb + 3 * (size_t)i, 1.0f);
-            int32_t bits = float_bits(weights[i]);
+            int32_t bits = bits_of_float(weights[i]);
             largest_bits = bits > largest_bits ? bits : largest_bits;
         }
     } else {
 #pragma omp simd reduction(max : largest_bits)
         for (uint32_t i = 0; i < size; i++) {
             weights[i] = weigh(rgb + 3 * (size_t)i, solid_angles[i] * quarter_texels);
-            int32_t bits = float_bits(weights[i]);
+            int32_t bits = bits_of_float(weights[i]);
             largest_bits = bits > largest_bits ? bits : largest_bits;
         }
     }
-    memcpy(&largest, &largest_bits, sizeof largest);
-    return largest;
+    return float_of_bits(largest_bits);
 }
 
 /* The weights as integers: rounded, and at least 1 for a texel that is lit, however dark. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * What samples contribute to the light that leaves a point: the innermost loop of all. Multiplications and additions
- * may be fused here (CMakeLists.txt), so results differ between instruction sets by their rounding. */
+ * may be fused here (cmake/HeliostatKernels.cmake), so results differ between instruction sets by their rounding. */
 #include "sampling/kernels.h"
 
 /* How the surface technique, if there is one, takes part in the density of a sample. */
