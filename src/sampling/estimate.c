@@ -150,27 +150,34 @@ typedef struct sample_cursor {
     uint32_t technique, taken; /* samples of that technique */
 } sample_cursor;
 
-static void take_samples(const gathering *g, const kernel_set *kernels, uint32_t technique, uint32_t first,
-                         uint32_t count, sample_block *block)
+/* Takes what fits of one technique, and steps on when it is exhausted. */
+static uint32_t take_some(const gathering *g, uint32_t room, sample_cursor *cursor)
 {
-    if (technique == TECHNIQUE_SURFACE)
-        kernels->draw_surface(g, first, count, block);
+    uint32_t rest = g->counts.realised[cursor->technique] - cursor->taken, count = rest < room ? rest : room;
+    if (count == rest)
+        *cursor = (sample_cursor){cursor->technique + 1, 0};
     else
-        kernels->take_pool(g, technique, g->windows[technique] + first, count, block);
+        cursor->taken += count;
+    return count;
 }
 
 /* The next samples, as many as fit, and what each contributes; false if there are none left. */
 static bool next_block(const gathering *g, const kernel_set *kernels, sample_cursor *cursor, sample_block *block)
 {
+    pool_piece pieces[CUBE_FACES];
+    uint32_t piece_count = 0, room = BLOCK_SAMPLES;
     block->count = 0;
-    while (cursor->technique < TECHNIQUES && block->count < BLOCK_SAMPLES) {
-        uint32_t rest = g->counts.realised[cursor->technique] - cursor->taken, room = BLOCK_SAMPLES - block->count;
-        uint32_t count = rest < room ? rest : room;
+    while (cursor->technique < TECHNIQUE_SURFACE && room > 0) {
+        uint32_t pool = cursor->technique, first = cursor->taken, count = take_some(g, room, cursor);
+        room -= count;
         if (count > 0)
-            take_samples(g, kernels, cursor->technique, cursor->taken, count, block);
-        cursor->taken += count;
-        if (count == rest)
-            *cursor = (sample_cursor){cursor->technique + 1, 0};
+            pieces[piece_count++] = (pool_piece){pool, g->windows[pool] + first, count};
+    }
+    kernels->take_pools(g, pieces, piece_count, block);
+    if (cursor->technique == TECHNIQUE_SURFACE && room > 0) {
+        uint32_t first = cursor->taken, count = take_some(g, room, cursor);
+        if (count > 0)
+            kernels->draw_surface(g, first, count, block);
     }
     if (block->count > 0)
         kernels->weigh(g, block);

@@ -28,6 +28,11 @@ typedef struct gathering {
     uint32_t surface_seed;
 } gathering;
 
+/* Samples first ... first + count - 1 of a pool. */
+typedef struct pool_piece {
+    uint32_t pool, first, count;
+} pool_piece;
+
 /* Samples side by side, whatever technique took them, and what each contributes. */
 typedef struct sample_block {
     uint32_t count;

@@ -26,10 +26,9 @@ typedef struct kernel_set {
      * every instruction set. */
     void (*draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
 
-    /* Adds samples to a block, which must have room: those of a pool from index `first` on, or samples
-     * first ... first + count - 1 of the surface technique, drawn now, with the light in their directions. The same
-     * bits with every instruction set. */
-    void (*take_pool)(const gathering *g, uint32_t pool, uint32_t first, uint32_t count, sample_block *block);
+    /* Adds samples to a block, which must have room: pieces of pools, or samples first ... first + count - 1 of the
+     * surface technique, drawn now, with the light in their directions. The same bits with every instruction set. */
+    void (*take_pools)(const gathering *g, const pool_piece *pieces, uint32_t piece_count, sample_block *block);
     void (*draw_surface)(const gathering *g, uint32_t first, uint32_t count, sample_block *block);
 
     /* What the samples of a block contribute, and the sum. */
@@ -50,7 +49,7 @@ _Static_assert(HELIO_LANES <= POOL_PADDING && BLOCK_SAMPLES % HELIO_LANES == 0,
 
 row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, uint32_t size, uint32_t *sums);
 void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
-void KERNEL(take_pool)(const gathering *g, uint32_t pool, uint32_t first, uint32_t count, sample_block *block);
+void KERNEL(take_pools)(const gathering *g, const pool_piece *pieces, uint32_t piece_count, sample_block *block);
 void KERNEL(draw_surface)(const gathering *g, uint32_t first, uint32_t count, sample_block *block);
 void KERNEL(weigh)(const gathering *g, sample_block *block);
 block_sum KERNEL(sum_block)(const sample_block *block);

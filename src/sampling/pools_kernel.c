@@ -89,25 +89,27 @@ void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32
 }
 
 /* Whole registers, past the last sample too: what is too much is overwritten by the next samples, or never read. */
-void KERNEL(take_pool)(const gathering *g, uint32_t pool, uint32_t first, uint32_t count, sample_block *block)
+void KERNEL(take_pools)(const gathering *g, const pool_piece *pieces, uint32_t piece_count, sample_block *block)
 {
-    const float expected = g->counts.expected[pool];
-    const float *const from = pools_array(g->pools, pool, SAMPLE_X) + first;
-    const float *const x = from, *const y = x + g->pools->stride, *const z = y + g->pools->stride;
-    const float *const red = z + g->pools->stride, *const green = red + g->pools->stride;
-    const float *const blue = green + g->pools->stride, *const density = blue + g->pools->stride;
+    const size_t stride = g->pools->stride;
+    const float *const samples = g->pools->samples;
     float *restrict to = block->samples[SAMPLE_X] + block->count;
-    for (size_t chunk = 0; chunk < count; chunk += HELIO_LANES) {
+    for (const pool_piece *piece = pieces; piece < pieces + piece_count; piece++) {
+        const float expected = g->counts.expected[piece->pool];
+        const float *from = samples + (size_t)piece->pool * g->pools->pool_length + piece->first;
+        for (uint32_t chunk = 0; chunk < piece->count; chunk += HELIO_LANES) {
 #pragma omp simd
-        for (size_t i = chunk; i < chunk + HELIO_LANES; i++) {
-            to[SAMPLE_X * BLOCK_STRIDE + i] = x[i];
-            to[SAMPLE_Y * BLOCK_STRIDE + i] = y[i];
-            to[SAMPLE_Z * BLOCK_STRIDE + i] = z[i];
-            to[SAMPLE_RED * BLOCK_STRIDE + i] = red[i];
-            to[SAMPLE_GREEN * BLOCK_STRIDE + i] = green[i];
-            to[SAMPLE_BLUE * BLOCK_STRIDE + i] = blue[i];
-            to[SAMPLE_DENSITY * BLOCK_STRIDE + i] = density[i] * expected;
+            for (size_t i = 0; i < HELIO_LANES; i++) {
+                to[SAMPLE_X * BLOCK_STRIDE + chunk + i] = from[SAMPLE_X * stride + chunk + i];
+                to[SAMPLE_Y * BLOCK_STRIDE + chunk + i] = from[SAMPLE_Y * stride + chunk + i];
+                to[SAMPLE_Z * BLOCK_STRIDE + chunk + i] = from[SAMPLE_Z * stride + chunk + i];
+                to[SAMPLE_RED * BLOCK_STRIDE + chunk + i] = from[SAMPLE_RED * stride + chunk + i];
+                to[SAMPLE_GREEN * BLOCK_STRIDE + chunk + i] = from[SAMPLE_GREEN * stride + chunk + i];
+                to[SAMPLE_BLUE * BLOCK_STRIDE + chunk + i] = from[SAMPLE_BLUE * stride + chunk + i];
+                to[SAMPLE_DENSITY * BLOCK_STRIDE + chunk + i] = from[SAMPLE_DENSITY * stride + chunk + i] * expected;
+            }
         }
+        to += piece->count;
+        block->count += piece->count;
     }
-    block->count += count;
 }

@@ -6,7 +6,7 @@
 const kernel_set KERNEL(kernels) = {
     .sum_row = KERNEL(sum_row),
     .draw_pool = KERNEL(draw_pool),
-    .take_pool = KERNEL(take_pool),
+    .take_pools = KERNEL(take_pools),
     .draw_surface = KERNEL(draw_surface),
     .weigh = KERNEL(weigh),
     .sum_block = KERNEL(sum_block),
