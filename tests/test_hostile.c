@@ -268,6 +268,14 @@ static helio_status import_with_textures(helio_context *own, const char *path, c
     return import_square(own, path, options, arrays);
 }
 
+/* Damage in a texture shows only when the time for the file itself no longer holds. */
+static helio_status import_textures_for_ever(helio_context *own, const char *path, const mesh_import_options *options,
+                                             mesh_arrays *arrays)
+{
+    options->on_textures(options->user);
+    return import_for_ever(own, path, options, arrays);
+}
+
 static helio_status import_by_allocation(helio_context *own, const char *path, const mesh_import_options *options,
                                          mesh_arrays *arrays)
 {
@@ -282,15 +290,80 @@ static void time_is_limited(void **state)
     (void)state;
     mesh_limits brief = LIMITS;
     brief.seconds = 1;
-    expect_sentence(import_for_ever, &brief, HELIO_ERR_DATA, "more than 1 s of processor time");
-    brief.seconds = 1;
+    expect_sentence(import_for_ever, &brief, HELIO_ERR_DATA,
+                    "more than 1 s of processor time; if you trust it, raise max_seconds (--max-mesh-seconds)");
     brief.texture_seconds = 2;
+    expect_sentence(import_textures_for_ever, &brief, HELIO_ERR_DATA, "more than 2 s of processor time; if you trust");
     helio_mesh *mesh;
     assert_ok(load(import_with_textures, &brief, &mesh));
     helio_mesh_destroy(context, mesh);
     brief = LIMITS;
     brief.clock_seconds = 1;
-    expect_sentence(import_asleep, &brief, HELIO_ERR_DATA, "takes more than 1 s;");
+    expect_sentence(import_asleep, &brief, HELIO_ERR_DATA, "takes more than 1 s; if you trust it, raise");
+}
+
+static helio_status import_with_a_word(helio_context *own, const char *path, const mesh_import_options *options,
+                                       mesh_arrays *arrays)
+{
+    context_log(own, HELIO_LOG_WARNING, "%s: a word", path);
+    return import_square(own, path, options, arrays);
+}
+
+/* Keeps the waiting thread away until the child is gone, and the time over. */
+static void log_slowly(void *user, helio_log_level level, const char *message)
+{
+    const struct timespec more_than_allowed = {.tv_sec = 1, .tv_nsec = 100000000};
+    siginfo_t information;
+    (void)user, (void)level, (void)message;
+    waitid(P_ALL, 0, &information, WEXITED | WNOWAIT);
+    nanosleep(&more_than_allowed, NULL);
+}
+
+static void last_words_of_a_child_are_heard(void **state)
+{
+    (void)state;
+    mesh_limits brief = LIMITS;
+    brief.clock_seconds = 1;
+    helio_context_desc desc = {.threads = 1, .log_level = HELIO_LOG_WARNING, .log = log_slowly};
+    helio_context *before = context;
+    assert_ok(helio_context_create(&desc, &context));
+    helio_mesh *mesh;
+    helio_status status = load(import_with_a_word, &brief, &mesh);
+    helio_mesh_destroy(context, mesh);
+    helio_context_destroy(context);
+    context = before;
+    assert_ok(status);
+}
+
+static helio_status import_and_look_at_limits(helio_context *own, const char *path, const mesh_import_options *options,
+                                              mesh_arrays *arrays)
+{
+    struct rlimit files, time[2];
+    getrlimit(RLIMIT_FSIZE, &files);
+    getrlimit(RLIMIT_CPU, &time[0]);
+    options->on_textures(options->user);
+    getrlimit(RLIMIT_CPU, &time[1]);
+    if (files.rlim_max != MIB || time[0].rlim_cur != 30 || time[1].rlim_cur != 30)
+        return fail(HELIO_ERR_DATA, "%s may take more than the host", path);
+    return import_square(own, path, options, arrays);
+}
+
+/* Soft limits of the host below those asked for hold for the child, too. */
+static void limits_of_the_host_are_kept(void **state)
+{
+    (void)state;
+    struct rlimit before[2];
+    getrlimit(RLIMIT_FSIZE, &before[0]);
+    getrlimit(RLIMIT_CPU, &before[1]);
+    const struct rlimit files = {MIB, before[0].rlim_max}, time = {30, before[1].rlim_max};
+    setrlimit(RLIMIT_FSIZE, &files);
+    setrlimit(RLIMIT_CPU, &time);
+    helio_mesh *mesh;
+    helio_status status = load(import_and_look_at_limits, &LIMITS, &mesh);
+    setrlimit(RLIMIT_FSIZE, &before[0]);
+    setrlimit(RLIMIT_CPU, &before[1]);
+    helio_mesh_destroy(context, mesh);
+    assert_ok(status);
 }
 
 static void memory_is_limited(void **state)
@@ -592,6 +665,8 @@ int main(void)
         TEST(handlers_of_the_host_are_not_run),
         TEST(hosts_may_ignore_their_children),
         TEST(time_is_limited),
+        TEST(last_words_of_a_child_are_heard),
+        TEST(limits_of_the_host_are_kept),
         TEST(memory_is_limited),
         TEST(texts_hold_no_control_characters),
         TEST(a_flood_of_messages_is_cut_off),

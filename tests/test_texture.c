@@ -231,9 +231,10 @@ static void meshes_refuse_bad_textures(void **state)
     textures[1].rgba = NULL;
     refuse(&desc, HELIO_ERR_DATA, "texture 1: it has no texels");
     /* Sizes come before texels are read, or memory is taken. */
-    textures[0].width = textures[0].height = 16384;
+    textures[0].width = 16384;
+    textures[0].height = 8192;
     textures[1] = two_textures[1];
-    refuse(&desc, HELIO_ERR_DATA, "up to number 1 take more than the 1 GiB");
+    refuse(&desc, HELIO_ERR_DATA, "up to number 1 take more than the 512 MiB");
 }
 
 static void meshes_keep_texels_of_their_own(void **state)

@@ -91,7 +91,7 @@ typedef struct helio_mesh_desc {
     const helio_material *materials;    /* [material_count] */
     const float *texture_coordinates;   /* [vertex_count][2], finite, up to 1e6, or NULL; required with textures */
     uint32_t texture_count;
-    const helio_texture *textures;                    /* [texture_count], 1 GiB of texels in all */
+    const helio_texture *textures;                    /* [texture_count], 512 MiB of texels in all */
     const helio_material_textures *material_textures; /* [material_count]; required with textures */
 } helio_mesh_desc;
 
@@ -101,7 +101,7 @@ HELIO_API helio_status helio_mesh_create(helio_context *context, const helio_mes
 /* What reading a mesh may cost: guards against files that are damaged, or made to do harm. */
 typedef struct helio_mesh_load_desc {
     uint64_t max_memory;  /* bytes that the importer may take; default: 1.5 GiB, and 16 for each byte of the file */
-    uint32_t max_seconds; /* of processor time for the file itself; 8 times that with its textures, and 16 times by the
+    uint32_t max_seconds; /* of processor time for the file itself; twice that with its textures, and 16 times by the
                              clock; default: 8, and one for each MiB of the file */
     uint64_t max_pixels;  /* of each texture; larger ones are left out; default: 2^26 */
 

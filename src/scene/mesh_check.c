@@ -83,7 +83,8 @@ static helio_status check_textures(const helio_mesh_desc *desc)
             return fail(HELIO_ERR_DATA, "texture %u: %s", i, helio_last_error());
         bytes += texture_bytes(&desc->textures[i]);
         if (bytes > TEXTURE_MAX_BYTES)
-            return fail(HELIO_ERR_DATA, "the textures up to number %u take more than the 1 GiB allowed", i);
+            return fail(HELIO_ERR_DATA, "the textures up to number %u take more than the %u MiB allowed", i,
+                        (unsigned)(TEXTURE_MAX_BYTES >> 20));
     }
     for (uint32_t i = 0; desc->texture_count != 0 && i < desc->material_count; i++) {
         const helio_material_textures *named = &desc->material_textures[i];

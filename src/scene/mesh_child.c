@@ -39,12 +39,14 @@ static void reset_signals(void)
     sigprocmask(SIG_SETMASK, &none, NULL);
 }
 
+/* Hosts may allow themselves a billion descriptors, which would take minutes to close one by one. */
+enum { MAX_CLOSED = 65536 };
+
 static void close_between(unsigned first, unsigned last)
 {
     if (first > last || syscall(SYS_close_range, first, last, 0) == 0)
         return;
-    long open_max = sysconf(_SC_OPEN_MAX); /* Linux before 5.9 */
-    for (unsigned i = first; i <= last && i < (unsigned long)open_max; i++)
+    for (unsigned i = first; i <= last && i < MAX_CLOSED; i++) /* Linux before 5.9 */
         close((int)i);
 }
 
@@ -67,14 +69,30 @@ static void close_descriptors(const mesh_child *child)
 
 /* ---- limits ---------------------------------------------------------------------------- */
 
-static bool limit(int resource, uint64_t soft, uint64_t hard)
+static uint64_t least(uint64_t a, uint64_t b)
+{
+    return a < b ? a : b;
+}
+
+/* Never more than the host has itself. */
+static bool limit(int resource, uint64_t most)
 {
     struct rlimit now;
     if (getrlimit(resource, &now) != 0)
         return false;
-    rlim_t most = now.rlim_max;
-    struct rlimit wanted = {soft < most ? soft : most, hard < most ? hard : most};
-    return setrlimit(resource, &wanted) == 0;
+    now.rlim_cur = now.rlim_max = least(most, now.rlim_cur);
+    return setrlimit(resource, &now) == 0;
+}
+
+/* The hard limit, which kills without telling why, comes a second after the one for all that may be granted. */
+static bool limit_time(uint64_t seconds, uint64_t all)
+{
+    struct rlimit now;
+    if (getrlimit(RLIMIT_CPU, &now) != 0)
+        return false;
+    now.rlim_max = least(least(all, now.rlim_cur) + 1, now.rlim_max);
+    now.rlim_cur = least(seconds, now.rlim_max > 0 ? now.rlim_max - 1 : 0);
+    return setrlimit(RLIMIT_CPU, &now) == 0;
 }
 
 /* Bytes of address space that are in use: those of the host, which this process inherited. */
@@ -104,27 +122,20 @@ static bool limit_memory(uint64_t memory)
         return false;
     if (__builtin_add_overflow(used, memory, &all))
         all = RLIM_INFINITY;
-    return limit(RLIMIT_AS, all, all);
+    return limit(RLIMIT_AS, all);
 }
 
 static helio_status set_limits(const mesh_child *child)
 {
     const mesh_limits *limits = child->limits;
     prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
-    if (limit_memory(limits->memory) && limit(RLIMIT_CPU, limits->seconds, (uint64_t)limits->texture_seconds + 1) &&
-        limit(RLIMIT_CORE, 0, 0) && limit(RLIMIT_FSIZE, limits->memory, limits->memory))
+    if (limit_memory(limits->memory) && limit_time(limits->seconds, limits->texture_seconds) && limit(RLIMIT_CORE, 0) &&
+        limit(RLIMIT_FSIZE, limits->memory))
         return HELIO_OK;
     return fail(HELIO_ERR_UNSUPPORTED,
                 "%s is not read, as no limits can be set here (%s; is /proc mounted?); set in_process for a file that "
                 "you trust",
                 child->path, strerror(errno));
-}
-
-/* Damaged files make importers loop, and textures only take the time that their pixels take: that is granted later. */
-static void extend_time(void *user)
-{
-    const mesh_child *child = user;
-    limit(RLIMIT_CPU, child->limits->texture_seconds, (uint64_t)child->limits->texture_seconds + 1);
 }
 
 /* ---- messages -------------------------------------------------------------------------- */
@@ -135,6 +146,17 @@ static void send_message(const mesh_child *child, mesh_message_kind kind, int32_
     snprintf(message.text, sizeof message.text, "%s", text);
     if (write(child->messages, &message, sizeof message) != sizeof message)
         _exit(1);
+}
+
+/* Damaged files make importers loop, and textures only take the time that their pixels take: that is granted later. */
+static void extend_time(void *user)
+{
+    struct rlimit now;
+    if (getrlimit(RLIMIT_CPU, &now) == 0 && now.rlim_max > 0) {
+        now.rlim_cur = now.rlim_max - 1;
+        setrlimit(RLIMIT_CPU, &now);
+    }
+    send_message(user, MESH_MESSAGE_TEXTURES, 0, "");
 }
 
 static void send_log(void *user, helio_log_level level, const char *message)

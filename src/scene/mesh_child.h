@@ -8,8 +8,9 @@
 #include <sys/types.h>
 
 typedef enum mesh_message_kind {
-    MESH_MESSAGE_LOG = 1, /* value: a helio_log_level */
-    MESH_MESSAGE_END,     /* value: a helio_status; the last one */
+    MESH_MESSAGE_LOG = 1,  /* value: a helio_log_level */
+    MESH_MESSAGE_TEXTURES, /* only textures remain: from here on their time holds */
+    MESH_MESSAGE_END,      /* value: a helio_status; the last one */
 } mesh_message_kind;
 
 /* Shorter than what a pipe takes in one piece. */

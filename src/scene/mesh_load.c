@@ -9,7 +9,7 @@
 /* The least that any file may take, and what its size adds. PLY, OBJ and GLB of a million triangles were seen to take 3
  * to 8 bytes for each of the file's, gzipped PLY 12, and a second for each 12 MB or more. */
 #define LEAST_MEMORY (UINT64_C(1536) << 20)
-enum { MEMORY_PER_BYTE = 16, LEAST_SECONDS = 8, TEXTURE_FACTOR = 8, CLOCK_FACTOR = 16 };
+enum { MEMORY_PER_BYTE = 16, LEAST_SECONDS = 8, TEXTURE_FACTOR = 2, CLOCK_FACTOR = 16 };
 
 #define DEFAULT_TEXTURE_PIXELS (UINT64_C(1) << 26)
 

@@ -23,8 +23,9 @@
 #endif
 
 enum {
-    SLICE = 100,        /* milliseconds between two looks at the child */
-    MAX_LOG_LINES = 100 /* of one file */
+    SLICE = 100,         /* milliseconds between two looks at the child */
+    MAX_LOG_LINES = 100, /* of one file */
+    MAX_LEFT = 2048      /* messages that a dead child may leave: more than a pipe holds */
 };
 
 /* Importers keep state for the whole process: none may be at work here when a child is made, nor two at once. */
@@ -53,9 +54,11 @@ typedef struct mesh_process {
     helio_status status;
     char reason[sizeof((mesh_message *)0)->text];
     uint32_t log_lines;
+    bool textures; /* only they remain */
 
     bool dead, late;
-    int exit; /* as waitpid() tells, or -1: the host has SIGCHLD ignored or waited itself */
+    int error; /* why it cannot be listened to, or 0 */
+    int exit;  /* as waitpid() tells, or -1: the host has SIGCHLD ignored or waited itself */
 
     mesh_message message; /* received so far: */
     size_t received;
@@ -127,8 +130,10 @@ static helio_status start(mesh_process *process, mesh_importer import)
     int error = errno;
     if (ends[1] >= 0)
         close(ends[1]);
-    if (process->pid > 0)
+    if (process->pid > 0) {
+        process->deadline = clock_seconds() + process->limits->clock_seconds;
         return HELIO_OK;
+    }
     return fail(HELIO_ERR_UNSUPPORTED,
                 "%s is not read, as no process can be made for it: %s; make room, or set in_process for a file that "
                 "you trust",
@@ -166,6 +171,10 @@ static void take_message(mesh_process *process)
     clean_text(message->text);
     if (message->kind == MESH_MESSAGE_LOG) {
         forward_log(process, message->value, message->text);
+        return;
+    }
+    if (message->kind == MESH_MESSAGE_TEXTURES) {
+        process->textures = true;
         return;
     }
     process->ended = true;
@@ -208,16 +217,27 @@ static void listen_to(mesh_process *process)
     while (clock_seconds() < process->deadline) {
         struct pollfd pipe_end = {.fd = process->messages, .events = POLLIN};
         int ready = poll(&pipe_end, 1, SLICE);
-        if (ready > 0 ? !receive(process) : ready == 0 && has_died(process))
+        if (ready < 0 && errno != EINTR)
+            process->error = errno;
+        if (process->error != 0 || (ready > 0 && !receive(process)) || (ready == 0 && has_died(process)))
             return;
     }
+}
+
+/* What the child said after the last look and before its death. */
+static void hear_the_rest(mesh_process *process)
+{
+    if (process->ended || fcntl(process->messages, F_SETFL, O_NONBLOCK) != 0)
+        return;
+    for (int i = 0; i < MAX_LEFT && receive(process); i++)
+        ;
 }
 
 /* Waits for the child, kills it where it has nothing more to do, and leaves no zombie. */
 static void reap(mesh_process *process)
 {
     const struct timespec moment = {.tv_nsec = 1000000};
-    while (!process->ended && !has_died(process) && clock_seconds() < process->deadline)
+    while (!process->ended && process->error == 0 && !has_died(process) && clock_seconds() < process->deadline)
         nanosleep(&moment, NULL);
     if (has_died(process))
         return;
@@ -233,6 +253,7 @@ static void reap(mesh_process *process)
 /* ---- outcome ---------------------------------------------------------------------------- */
 
 static const char WAY_OUT[] = "if it is sound, convert it with another program, to PLY or glTF";
+static const char MORE_TIME[] = "if you trust it, raise max_seconds (--max-mesh-seconds)";
 
 static helio_status fail_of_memory(const mesh_process *process)
 {
@@ -245,9 +266,13 @@ static helio_status fail_of_memory(const mesh_process *process)
 static helio_status fail_of_death(const mesh_process *process)
 {
     const char *path = process->path;
+    const mesh_limits *limits = process->limits;
+    if (process->error != 0)
+        return fail(HELIO_ERR_IO, "%s was not read: its import cannot be waited for: %s", path,
+                    strerror(process->error));
     if (process->late)
         return fail(HELIO_ERR_DATA, "%s cannot be read as a mesh: its import takes more than %u s; %s", path,
-                    process->limits->clock_seconds, WAY_OUT);
+                    limits->clock_seconds, MORE_TIME);
     if (process->exit == -1)
         return fail(HELIO_ERR_DATA, "%s cannot be read as a mesh: its import ended for an unknown reason; %s", path,
                     WAY_OUT);
@@ -258,7 +283,7 @@ static helio_status fail_of_death(const mesh_process *process)
     if (number == SIGXCPU)
         return fail(HELIO_ERR_DATA,
                     "%s cannot be read as a mesh: its import takes more than %u s of processor time; %s", path,
-                    process->limits->seconds, WAY_OUT);
+                    process->textures ? limits->texture_seconds : limits->seconds, MORE_TIME);
     if (number == SIGKILL)
         return fail(HELIO_ERR_MEMORY,
                     "%s was not read: its import was killed by the system, which may have run out of memory; make room",
@@ -288,7 +313,7 @@ static helio_status map_memory(const mesh_process *process, mesh_delivery *deliv
     if (status.st_size <= 0 || (uintmax_t)status.st_size > SIZE_MAX)
         return fail(HELIO_ERR_DATA, "%s cannot be read as a mesh: its import returned nothing", process->path);
     delivery->size = (size_t)status.st_size;
-    void *mapping = mmap(NULL, delivery->size, PROT_READ, MAP_PRIVATE | MAP_POPULATE, process->memory, 0);
+    void *mapping = mmap(NULL, delivery->size, PROT_READ, MAP_PRIVATE, process->memory, 0);
     if (mapping == MAP_FAILED)
         return fail(HELIO_ERR_MEMORY, "no memory for %s (%zu bytes)", process->path, delivery->size);
     delivery->mapping = mapping;
@@ -304,11 +329,11 @@ helio_status mesh_process_import(helio_context *context, const char *path, mesh_
 {
     mesh_process process = {.context = context, .path = path, .limits = limits, .memory = -1, .messages = -1};
     *delivery = (mesh_delivery){0};
-    process.deadline = clock_seconds() + limits->clock_seconds;
     helio_status status = start(&process, import);
     if (status == HELIO_OK) {
         listen_to(&process);
         reap(&process);
+        hear_the_rest(&process);
         status = judge(&process);
     }
     if (status == HELIO_OK)

@@ -8,7 +8,7 @@
 enum { TEXTURE_MAX_EDGE = 16384 };
 
 /* All texels of one mesh, at four bytes. */
-#define TEXTURE_MAX_BYTES (UINT64_C(1) << 30)
+#define TEXTURE_MAX_BYTES (UINT64_C(512) << 20)
 
 /* Beyond this a float no longer tells the texels of a small texture apart. */
 #define TEXTURE_MAX_COORDINATE 1e6f
