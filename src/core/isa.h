@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * isa.h - the instruction sets that kernels are built for, and which of them this machine runs.
  *
- * Kernel files are compiled once for each: cmake/HeliostatKernels.cmake defines HELIO_ISA (the suffix of their names) and HELIO_LANES
- * (how many floats a register holds). "scalar" is the definition that the others are compared with. */
+ * Kernel files are compiled once for each: cmake/HeliostatKernels.cmake defines HELIO_ISA (the suffix of their names)
+ * and HELIO_LANES (how many floats a register holds). "scalar" is the definition that the others are compared with. */
 #ifndef HELIOSTAT_SRC_ISA_H
 #define HELIOSTAT_SRC_ISA_H
 

@@ -44,6 +44,7 @@ static helio_status encode(png_encoder *encoder, const helio_picture *picture, c
                  desc->alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(library, encoder->info, PNG_sRGB_INTENT_RELATIVE);
+    png_set_compression_level(library, 3); /* 0.6 of the time of 6, the default, for files a tenth larger */
     png_write_info(library, encoder->info);
     size_t channels = desc->alpha ? 4 : 3;
     for (size_t row = 0; row < picture->height; row++) {
