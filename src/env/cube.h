@@ -48,10 +48,9 @@ static inline vec3 cube_direction(uint32_t face, float u, float v)
 /* Row or column of a face coordinate. Both ends belong to the face, so u = 1 is in the last texel. */
 static inline uint32_t cube_texel(float coordinate, uint32_t size)
 {
-    float position = (coordinate + 1.0f) * 0.5f * (float)size;
-    if (!(position > 0.0f)) /* also NaN */
-        return 0;
-    return position < (float)size ? (uint32_t)position : size - 1;
+    float position = (coordinate + 1.0f) * 0.5f * (float)size, last = (float)(size - 1);
+    position = position > 0.0f ? position : 0.0f; /* also NaN */
+    return (uint32_t)(int32_t)(position < last ? position : last);
 }
 
 /* Solid angle, sr, of the part of a face between its centre and the corner (u, v), with the sign of u v. */

@@ -28,7 +28,8 @@ static void invert_group(search_group *group, uint32_t count, uint32_t length)
         for (uint32_t i = 0; i < count; i++) {
             uint32_t next = group->cell[i] + step;
             next = next < length ? next : length; /* where the sum is above whole */
-            group->cell[i] = group->sums[i][next] <= whole[i] ? next : group->cell[i];
+            uint32_t is_below = group->sums[i][next] <= whole[i];
+            group->cell[i] += step & (0u - is_below); /* a branch would be guessed wrong half of the time */
         }
     for (uint32_t i = 0; i < count; i++)
         group->fraction[i] = tables_fraction_within(group->sums[i], length, group->cell[i], group->fraction[i]);
@@ -72,6 +73,8 @@ static void draw_group(helio_pools *pools, uint32_t pool, uint32_t first, uint32
     for (uint32_t i = 0; i < count; i++)
         columns.sums[i] = tables_face(tables, faces[i]).rows + (size_t)rows.cell[i] * (size + 1);
     invert_group(&columns, count, size);
+    for (uint32_t i = 0; i < count; i++)
+        __builtin_prefetch(environment_texel(tables->environment, faces[i], rows.cell[i], columns.cell[i]));
     for (uint32_t i = 0; i < count; i++) {
         helio_table_sample sample;
         tables_sample_at(tables, faces[i], rows.cell[i], rows.fraction[i], columns.cell[i], columns.fraction[i],

@@ -33,8 +33,8 @@ typedef struct texel_list {
     float u[BLOCK_SAMPLES], v[BLOCK_SAMPLES];
 } texel_list;
 
-static void find_texels(const gathering *g, uint32_t count, const float *x, const float *y, const float *z,
-                        texel_list *texels)
+static void find_texels(const gathering *g, uint32_t count, const float *restrict x, const float *restrict y,
+                        const float *restrict z, texel_list *restrict texels)
 {
     const uint32_t size = g->environment->size;
     for (uint32_t i = 0; i < count; i++) {
