@@ -46,7 +46,7 @@ san: dependencies-test build-asan/build.ninja
 # long.
 tsan: dependencies-test build-tsan/build.ninja
 	@cmake --build build-tsan
-	@cd build-tsan && $(CTEST) --tests-regex '^test_(core|environment|tables|pools|isa|rays|frame|hostile|bench|cli)$$'
+	@cd build-tsan && $(CTEST) --tests-regex '^test_(core|environment|tables|pools|isa|rays|frame|hostile|cli)$$'
 
 # Each target for so long, or one of them alone; docs/fuzzing.md tells more.
 fuzz: dependencies-ci build-fuzz/build.ninja
