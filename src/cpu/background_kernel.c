@@ -21,18 +21,11 @@ static void find_places(const struct background *b, int32_t count, const float *
     const float half = 0.5f * (float)size, last = (float)size - 1.0f;
 #pragma omp simd
     for (int32_t i = 0; i < count; i++) {
-        /* As cube_project() does it. Conditions made of conditions would keep the loop from becoming vectors. */
-        vec3 d = background_direction(&view, x[i], y[i]);
-        float ax = fabsf(d.x), ay = fabsf(d.y), az = fabsf(d.z);
-        bool on_x = (ax >= ay) & (ax >= az), y_over_z = ay >= az;
-        float major = on_x ? d.x : y_over_z ? d.y : d.z, sign = copysignf(1.0f, major);
-        float right_off_x = y_over_z ? d.x : sign * d.x, down_off_x = y_over_z ? sign * d.z : -d.y;
-        float right = on_x ? -sign * d.z : right_off_x, down = on_x ? -d.y : down_off_x;
-        int32_t face = (on_x ? 0 : y_over_z ? 2 : 4) + (major < 0.0f ? 1 : 0);
-        float texels = half / fabsf(major);
-        float column = right * texels + (half - 0.5f), row = down * texels + (half - 0.5f);
+        cube_meeting at = cube_meet(background_direction(&view, x[i], y[i]));
+        float texels = half / at.distance;
+        float column = at.right * texels + (half - 0.5f), row = at.down * texels + (half - 0.5f);
         int32_t whole_column = (int32_t)column, whole_row = (int32_t)row;
-        int32_t offset = ((face * size + whole_row) * size + whole_column) * 3;
+        int32_t offset = (((int32_t)at.face * size + whole_row) * size + whole_column) * 3;
         bool inside = (column >= 0.0f) & (row >= 0.0f) & (column < last) & (row < last) & (offset < end);
         places->offset[i] = inside ? offset : -1;
         places->right[i] = column - (float)whole_column;

@@ -23,19 +23,30 @@ typedef struct cube_position {
     float u, v;
 } cube_position;
 
-/* Where a direction (not 0, any length) meets the cube. On edges X wins over Y over Z. By selection, as directions come
- * in no order that a processor could guess branches from. */
-static inline cube_position cube_project(vec3 d)
+/* The face that a direction (not 0, any length) meets; u and v are right / distance and down / distance. */
+typedef struct cube_meeting {
+    uint32_t face;
+    float right, down, distance;
+} cube_meeting;
+
+/* On edges X wins over Y over Z. By selection, as directions come in no order that a processor could guess branches
+ * from; conditions made of conditions would keep loops from becoming vectors. */
+static inline cube_meeting cube_meet(vec3 d)
 {
     float x = fabsf(d.x), y = fabsf(d.y), z = fabsf(d.z);
-    bool on_x = (x >= y) & (x >= z), on_y = !on_x & (y >= z);
-    float major = on_x ? d.x : on_y ? d.y : d.z, size = fabsf(major);
-    bool negative = !(major >= 0.0f);
-    float right = on_x ? -d.z : d.x, down = on_y ? d.z : -d.y;
-    right = (negative & !on_y) ? -right : right;
-    down = (negative & on_y) ? -down : down;
-    uint32_t axis = on_x ? 0 : on_y ? 2 : 4;
-    return (cube_position){axis + negative, right / size, down / size};
+    bool on_x = (x >= y) & (x >= z), y_over_z = y >= z;
+    float major = on_x ? d.x : y_over_z ? d.y : d.z, sign = copysignf(1.0f, major);
+    float right_off_x = y_over_z ? d.x : sign * d.x, down_off_x = y_over_z ? sign * d.z : -d.y;
+    int32_t axis = on_x ? 0 : y_over_z ? 2 : 4;
+    return (cube_meeting){(uint32_t)(axis + (major < 0.0f ? 1 : 0)), on_x ? -sign * d.z : right_off_x,
+                          on_x ? -d.y : down_off_x, fabsf(major)};
+}
+
+/* Where a direction meets the cube. */
+static inline cube_position cube_project(vec3 d)
+{
+    cube_meeting at = cube_meet(d);
+    return (cube_position){at.face, at.right / at.distance, at.down / at.distance};
 }
 
 /* Unit vector towards a point of a face. */

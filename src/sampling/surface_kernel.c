@@ -37,6 +37,7 @@ static void find_texels(const gathering *g, uint32_t count, const float *restric
                         const float *restrict z, texel_list *restrict texels)
 {
     const uint32_t size = g->environment->size;
+#pragma omp simd
     for (uint32_t i = 0; i < count; i++) {
         cube_position at = cube_project((vec3){x[i], y[i], z[i]});
         texels->face[i] = at.face;
