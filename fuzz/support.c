@@ -179,7 +179,8 @@ void fuzz_decode_texture(const uint8_t *data, size_t size)
     helio_context *context = fuzz_context();
     unsigned char *bytes = fuzz_copy(data, size);
     helio_texture texture = {0};
-    helio_status status = texture_decode(context, "texture", bytes, size, UINT64_C(4) * FUZZ_MAX_PIXELS, &texture);
+    helio_status status =
+        texture_decode(context, "texture", bytes, size, UINT64_C(4) * FUZZ_MAX_PIXELS, NULL, &texture);
     if (status == HELIO_OK) {
         texture_curve curve = texture_curve_srgb();
         float rgb[3];

@@ -1,150 +1,24 @@
 /* SPDX-License-Identifier: MIT
  * heliostat bench: what it prints and writes. That its figures are there and fit together, not how large they are: no
- * machine is too slow for these tests. HELIOSTAT_PROGRAM names the program. */
-#include "support.h"
-
+ * machine is too slow for these tests. */
 #include "bench_series.h"
 #include "list.h"
+#include "program.h"
+#include "scene/mesh_process.h"
 
-#include <ctype.h>
-#include <fcntl.h>
-#include <jansson.h>
 #include <math.h>
 #include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 /* Everything, as small as it goes. */
 #define SMALL                                                                                                          \
     "bench --env constant:1,1,1 --mesh tetrahedron.obj --size 64x36 --env-size 8,4 --map-size 16x8,8x4 --spp 4,200 "   \
     "--threads 2,1 --repeat 2 --mesh-size 100,200 "
 
-static char program[TEST_PATH_SIZE], directory[TEST_PATH_SIZE], out[1 << 17], err[1 << 15];
-
-/* ---- running the program ---------------------------------------------------------------- */
-
-static void read_text(const char *path, char *text, size_t size)
+static void succeeds_silently(const char *line)
 {
-    FILE *stream = fopen(path, "rb");
-    assert_non_null(stream);
-    size_t length = fread(text, 1, size - 1, stream);
-    assert_true(feof(stream));
-    text[length] = 0;
-    fclose(stream);
-}
-
-static void redirect(int descriptor, const char *path)
-{
-    int file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    if (file < 0 || dup2(file, descriptor) < 0)
-        _exit(99);
-}
-
-/* Starts "heliostat LINE", with the words of line separated by blanks. */
-static pid_t start(const char *line)
-{
-    static char words[1024];
-    char *arguments[64] = {program};
-    snprintf(words, sizeof words, "%s", line);
-    size_t count = 1;
-    for (char *word = strtok(words, " "); word != NULL && count < 63; word = strtok(NULL, " "))
-        arguments[count++] = word;
-    unlink("../out");
-    fflush(NULL);
-    pid_t child = fork();
-    assert_true(child >= 0);
-    if (child != 0)
-        return child;
-    redirect(STDOUT_FILENO, "../out");
-    redirect(STDERR_FILENO, "../err");
-    execv(program, arguments);
-    _exit(99);
-}
-
-/* Exit code; minus the signal's number where a signal ended the program. */
-static int finish(pid_t child)
-{
-    int status;
-    assert_int_equal(waitpid(child, &status, 0), child);
-    read_text("../out", out, sizeof out);
-    read_text("../err", err, sizeof err);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-}
-
-static void succeeds(const char *line)
-{
-    int code = finish(start(line));
-    if (code != 0 || err[0] != 0)
-        fail_msg("heliostat %s: exit code %d, %s", line, code, err);
-}
-
-/* Nothing on stdout, one sentence on stderr that holds the word. */
-static void fails(const char *line, int expected, const char *word)
-{
-    int code = finish(start(line));
-    bool is_sentence = strncmp(err, "heliostat: ", 11) == 0 && strchr(err, '\n') == err + strlen(err) - 1;
-    if (code != expected || !is_sentence || out[0] != 0 || strstr(err, word) == NULL)
-        fail_msg("heliostat %s: exit code %d in place of %d, no \"%s\" in: %s%s", line, code, expected, word, err, out);
-}
-
-static json_t *load(const char *path)
-{
-    json_error_t error;
-    json_t *report = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
-    if (report == NULL)
-        fail_msg("%s: %s", path, error.text);
-    return report;
-}
-
-static bool exists(const char *path)
-{
-    return access(path, F_OK) == 0;
-}
-
-/* ---- set-up ----------------------------------------------------------------------------- */
-
-static void write_tetrahedron(void)
-{
-    FILE *stream = fopen("tetrahedron.obj", "wb");
-    assert_non_null(stream);
-    fputs("v 1 1 1\nv -1 -1 1\nv -1 1 -1\nv 1 -1 -1\nf 1 3 2\nf 1 4 3\nf 1 2 4\nf 2 3 4\n", stream);
-    assert_int_equal(fclose(stream), 0);
-}
-
-static int set_up(void **state)
-{
-    (void)state;
-    const char *named = getenv("HELIOSTAT_PROGRAM");
-    if (named == NULL || realpath(named, program) == NULL) {
-        print_error("HELIOSTAT_PROGRAM must name the program to test\n");
-        return -1;
-    }
-    make_directory(directory);
-    if (chdir(directory) != 0 || mkdir("work", 0777) != 0 || chdir("work") != 0)
-        return -1;
-    write_tetrahedron();
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    if (chdir("/") != 0)
-        return -1;
-    remove_directory(directory);
-    return 0;
-}
-
-static void needs_renderer(void)
-{
-#if !defined(HELIO_WITH_EMBREE) || !defined(HELIO_WITH_ASSIMP)
-    print_message("skipped: this build renders nothing\n");
-    skip();
-#endif
+    succeeds(line);
+    assert_string_equal(program_err, "");
 }
 
 static uint32_t isa_count(void)
@@ -225,22 +99,6 @@ static void test_specifications_keep_their_commas(void **state)
 }
 
 /* ---- the report ------------------------------------------------------------------------- */
-
-static double number_of(const json_t *object, const char *key)
-{
-    const json_t *value = json_object_get(object, key);
-    if (!json_is_number(value))
-        fail_msg("no number \"%s\" in %s", key, json_dumps(object, JSON_COMPACT));
-    return json_number_value(value);
-}
-
-static const char *text_of(const json_t *object, const char *key)
-{
-    const char *text = json_string_value(json_object_get(object, key));
-    if (text == NULL)
-        fail_msg("no text \"%s\" in %s", key, json_dumps(object, JSON_COMPACT));
-    return text;
-}
 
 static bool is_positive(const json_t *object, const char *key)
 {
@@ -345,9 +203,9 @@ static void check_result(const json_t *result)
 static void test_report_holds_every_stage_and_every_value(void **state)
 {
     (void)state;
-    needs_renderer();
-    succeeds(SMALL "--strategy face,cosine --material diffuse:0.8,0.2,0.1,ggx --json a.json");
-    json_t *report = load("a.json"), *result;
+    skip_without(NEEDS_RENDERER);
+    succeeds_silently(SMALL "--strategy face,cosine --material diffuse:0.8,0.2,0.1,ggx --json a.json");
+    json_t *report = load_json("a.json"), *result;
     size_t index, sets = isa_count();
     check_machine(report);
     json_array_foreach(json_object_get(report, "results"), index, result) check_result(result);
@@ -386,22 +244,22 @@ static void test_report_holds_every_stage_and_every_value(void **state)
 static void test_table_shows_each_stage(void **state)
 {
     (void)state;
-    needs_renderer();
-    succeeds(SMALL "--isa best");
+    skip_without(NEEDS_RENDERER);
+    succeeds_silently(SMALL "--isa best");
     static const char *const words[] = {"memcpy", "peak",        "Map into cube", "Tables", "Pools", "Estimate",
                                         "rays",   "Camera rays", "Shadow rays",   "Frames", "####"};
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
-        if (strstr(out, words[i]) == NULL)
+        if (strstr(program_out, words[i]) == NULL)
             fail_msg("the table does not show %s", words[i]);
-    assert_null(strchr(out, '\r')); /* progress is for terminals */
+    assert_null(strchr(program_out, '\r')); /* progress is for terminals */
     assert_false(exists("bench.json"));
 }
 
 static void test_stages_and_quick_limit_the_work(void **state)
 {
     (void)state;
-    succeeds("bench --quick --stages tables --env constant:1,1,1 --env-size 4,8 --map-size 8x4 --json -");
-    json_t *report = load("../out"); /* JSON alone is on standard output */
+    succeeds_silently("bench --quick --stages tables --env constant:1,1,1 --env-size 4,8 --map-size 8x4 --json -");
+    json_t *report = load_json("../out"); /* JSON alone is on standard output */
     assert_int_equal(count_results(report, "memcpy"), 1);
     assert_int_equal(count_results(report, "fma"), 1);
     assert_int_equal(count_results(report, "tables"), 1);
@@ -416,11 +274,11 @@ static void test_stages_and_quick_limit_the_work(void **state)
 static void test_instruction_sets_are_those_asked_for(void **state)
 {
     (void)state;
-    succeeds(
+    succeeds_silently(
         "bench --stages pools --isa scalar --repeat 1 --env constant:1,1,1 --env-size 4 --map-size 8x4 --threads 1 "
         "--json a.json -q");
-    assert_int_equal(out[0], 0); /* -q */
-    json_t *report = load("a.json");
+    assert_int_equal(program_out[0], 0); /* -q */
+    json_t *report = load_json("a.json");
     assert_int_equal(count_results(report, "fma"), 1);
     check_text_there(report, "pools", "isa", "scalar");
     assert_int_equal(count_results(report, "pools"), 1);
@@ -471,27 +329,40 @@ static void test_failures_exit_1_and_leave_nothing(void **state)
     fails("bench --json nowhere/b.json", 1, "nowhere/");
     fails("bench --json .", 1, "directory");
     fails("bench --mesh tetrahedron.obj --json ./tetrahedron.obj", 1, "replace an input");
+    write_text("map.pfm", "PF\n2 1\n-1\n012301230123012301230123");
+    fails("bench --env map.pfm --max-pixels 1 --json b.json", 1, "--max-pixels");
     assert_false(exists("b.json"));
 }
+
+#ifdef HELIO_WITH_ASSIMP
+
+static void test_limits_hold_for_the_mesh(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+    if (!mesh_process_limits_memory) {
+        print_message("skipped: with this sanitizer address space has no limit\n");
+        skip();
+    }
+    fails("bench --stages scene --env constant:1,1,1 --mesh tetrahedron.obj --max-mesh-memory 1 --quick -q", 1,
+          "tetrahedron.obj needs more than the 1 MiB of memory allowed for reading it");
+    assert_non_null(strstr(program_err, "--max-mesh-memory"));
+}
+
+#endif
 
 /* The table comes part by part, so that it tells when the work is under way. */
 static void test_interrupt_stops_without_a_report(void **state)
 {
     (void)state;
-    pid_t child = start("bench --stages tables,estimate --env constant:1,1,1 --env-size 8 --map-size 16x8 --repeat 101 "
-                        "--spp 65536 --json b.json");
-    bool has_begun = false;
-    for (int i = 0; i < 3000 && !has_begun; i++) {
-        usleep(10000);
-        if (exists("../out"))
-            read_text("../out", out, sizeof out);
-        has_begun = strstr(out, "memcpy") != NULL;
-    }
+    pid_t child = start_program("bench --stages tables,estimate --env constant:1,1,1 --env-size 8 --map-size 16x8 "
+                                "--repeat 101 --spp 65536 --json b.json");
+    bool has_begun = program_says("memcpy");
     kill(child, SIGINT);
-    int code = finish(child);
+    int code = finish_program(child, NULL);
     assert_true(has_begun);
     assert_int_equal(code, 130);
-    assert_non_null(strstr(err, "stopped"));
+    assert_non_null(strstr(program_err, "stopped"));
     assert_false(exists("b.json"));
 }
 
@@ -500,37 +371,41 @@ static void test_interrupt_stops_without_a_report(void **state)
 static void test_help_tells_every_option(void **state)
 {
     (void)state;
-    static const char *const options[] = {"--stages",   "--repeat",   "--quick",   "--isa",  "--threads",
-                                          "--env ",     "--mesh ",    "--size",    "--json", "--map-size",
-                                          "--env-size", "--strategy", "--material"};
-    succeeds("bench --help");
+    static const char *const options[] = {"--stages",   "--repeat",     "--quick",           "--isa",
+                                          "--threads",  "--env ",       "--mesh ",           "--size",
+                                          "--json",     "--map-size",   "--env-size",        "--strategy",
+                                          "--material", "--max-pixels", "--max-mesh-memory", "--max-mesh-seconds"};
+    succeeds_silently("bench --help");
     for (size_t i = 0; i < sizeof options / sizeof options[0]; i++)
-        if (strstr(out, options[i]) == NULL)
+        if (strstr(program_out, options[i]) == NULL)
             fail_msg("bench --help does not tell of %s", options[i]);
-    for (const char *line = out; *line != 0; line += strcspn(line, "\n") + 1)
+    for (const char *line = program_out; *line != 0; line += strcspn(line, "\n") + 1)
         assert_true(strcspn(line, "\n") <= 100);
-    succeeds("--help");
-    assert_non_null(strstr(out, "bench"));
-    succeeds("help --man");
-    assert_non_null(strstr(out, "bench"));
-    assert_non_null(strstr(out, "map\\-size"));
+    succeeds_silently("--help");
+    assert_non_null(strstr(program_out, "bench"));
+    succeeds_silently("help --man");
+    assert_non_null(strstr(program_out, "bench"));
+    assert_non_null(strstr(program_out, "map\\-size"));
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_spread_is_median_and_quartiles),
-        cmocka_unit_test(test_series_hold_no_more_than_they_can),
-        cmocka_unit_test(test_lists_are_divided_at_commas),
-        cmocka_unit_test(test_specifications_keep_their_commas),
-        cmocka_unit_test(test_report_holds_every_stage_and_every_value),
-        cmocka_unit_test(test_table_shows_each_stage),
-        cmocka_unit_test(test_stages_and_quick_limit_the_work),
-        cmocka_unit_test(test_instruction_sets_are_those_asked_for),
-        cmocka_unit_test(test_bad_command_lines_are_refused_in_one_sentence),
-        cmocka_unit_test(test_failures_exit_1_and_leave_nothing),
-        cmocka_unit_test(test_interrupt_stops_without_a_report),
-        cmocka_unit_test(test_help_tells_every_option),
+        program_test(test_spread_is_median_and_quartiles),
+        program_test(test_series_hold_no_more_than_they_can),
+        program_test(test_lists_are_divided_at_commas),
+        program_test(test_specifications_keep_their_commas),
+        program_test(test_report_holds_every_stage_and_every_value),
+        program_test(test_table_shows_each_stage),
+        program_test(test_stages_and_quick_limit_the_work),
+        program_test(test_instruction_sets_are_those_asked_for),
+        program_test(test_bad_command_lines_are_refused_in_one_sentence),
+        program_test(test_failures_exit_1_and_leave_nothing),
+#ifdef HELIO_WITH_ASSIMP
+        program_test(test_limits_hold_for_the_mesh),
+#endif
+        program_test(test_interrupt_stops_without_a_report),
+        program_test(test_help_tells_every_option),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, set_up_program, tear_down_program);
 }

@@ -2,6 +2,7 @@
  * The ground that everything stands on: contexts, errors, parallel loops, random numbers, vectors, files. */
 #include "support.h"
 
+#include "core/clock.h"
 #include "core/context.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -9,12 +10,20 @@
 #include "core/vector.h"
 
 #include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
 #include <float.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
 #include <pthread.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 /* ---- status and errors ---- */
@@ -190,6 +199,7 @@ static void messages_above_the_log_level_are_dropped(void **state)
         assert_ok(helio_context_create(
             &(helio_context_desc){.threads = 1, .log_level = (helio_log_level)level, .log = hear, .user = &h},
             &context));
+        assert_int_equal(context_log_level(context), level);
         for (int i = HELIO_LOG_ERROR; i <= HELIO_LOG_DEBUG; i++) {
             context_log(context, (helio_log_level)i, "message %d", i);
             assert_int_equal(h.messages[i], i <= level);
@@ -553,6 +563,18 @@ static void luminance_of_white_is_one(void **state)
     assert_float_equal(luminance((float[3]){0, 0, 1}), 0.0722, 1e-7);
 }
 
+/* ---- time ---- */
+
+static void clock_counts_seconds(void **state)
+{
+    (void)state;
+    const struct timespec nap = {.tv_nsec = 20000000};
+    double start = clock_seconds();
+    assert_int_equal(nanosleep(&nap, NULL), 0);
+    double passed = clock_seconds() - start;
+    assert_true(passed >= 0.02 - 1e-6 && passed < 60.0); /* a slow machine sleeps longer */
+}
+
 /* ---- files ---- */
 
 typedef struct place {
@@ -642,6 +664,154 @@ static void abandoned_file_leaves_nothing(void **state)
     file_writer_abandon(&writer);
     file_writer_abandon(&writer);
     assert_int_equal(entries(p), 0);
+}
+
+/* Does the folder take files without a name? Asked of the system, not of what is tested. */
+static bool takes_unnamed_files(const place *p)
+{
+#ifdef O_TMPFILE
+    int descriptor = open(p->directory, O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
+    char link[32];
+    snprintf(link, sizeof link, "/proc/self/fd/%d", descriptor);
+    bool can_be_linked = descriptor >= 0 && access(link, F_OK) == 0;
+    if (descriptor >= 0)
+        close(descriptor);
+    return can_be_linked;
+#else
+    (void)p;
+    return false;
+#endif
+}
+
+static bool skip_without_unnamed_files(const place *p)
+{
+    if (takes_unnamed_files(p))
+        return false;
+    print_message("skipped, %s takes no files without a name\n", p->directory);
+    skip();
+    return true;
+}
+
+/* What abandon and commit do to such a file, the other tests see. */
+static void file_has_no_name_until_it_is_complete(void **state)
+{
+    place *p = *state;
+    if (skip_without_unnamed_files(p))
+        return;
+    file_writer writer;
+    assert_ok(file_writer_open(&writer, in_place(p, "picture.exr")));
+    fputs("half", writer.stream);
+    fflush(writer.stream);
+    assert_int_equal(entries(p), 0);
+    fputs(" and half", writer.stream);
+    assert_ok(file_writer_commit(&writer));
+    expect_text(p, p->path, "half and half");
+    assert_int_equal(entries(p), 1);
+
+    mode_t mask = umask(0);
+    umask(mask);
+    struct stat status;
+    assert_int_equal(stat(p->path, &status), 0);
+    assert_int_equal(status.st_mode & 0777, 0666 & ~mask); /* as that of any new file */
+}
+
+static void file_without_a_folder_goes_to_the_current_one(void **state)
+{
+    place *p = *state;
+    int before = open(".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    assert_true(before >= 0);
+    assert_int_equal(chdir(p->directory), 0);
+    file_writer writer;
+    helio_status status = file_writer_open(&writer, "picture.exr");
+    if (status == HELIO_OK) {
+        fputs("text", writer.stream);
+        status = file_writer_commit(&writer);
+    }
+    assert_int_equal(fchdir(before), 0);
+    close(before);
+    assert_ok(status);
+    expect_text(p, in_place(p, "picture.exr"), "text");
+    assert_int_equal(entries(p), 1);
+}
+
+/* Runs work in a process of its own. Returns how that ended, as waitpid() tells. */
+static int run_apart(int (*work)(const char *path), const char *path)
+{
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0)
+        _exit(work(path));
+    int status = 0;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    return status;
+}
+
+static int die_amid_writing(const char *path)
+{
+    file_writer writer;
+    if (file_writer_open(&writer, path) != HELIO_OK)
+        return 1;
+    fputs("half", writer.stream);
+    fflush(writer.stream);
+    raise(SIGKILL);
+    return 2;
+}
+
+static void killed_writer_leaves_nothing(void **state)
+{
+    place *p = *state;
+    if (skip_without_unnamed_files(p))
+        return;
+    const char *path = in_place(p, "picture.exr");
+    int status = run_apart(die_amid_writing, path);
+    assert_true(WIFSIGNALED(status));
+    assert_int_equal(WTERMSIG(status), SIGKILL);
+    assert_int_equal(entries(p), 0);
+    write_text(path, "old");
+    run_apart(die_amid_writing, path);
+    expect_text(p, path, "old");
+    assert_int_equal(entries(p), 1);
+}
+
+/* From here on, this process can make no hard links, as on some file systems or under some guards. */
+static bool forbid_links(void)
+{
+    struct sock_filter rules[] = {
+        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr)),
+        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_linkat, 0, 1),
+        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EPERM),
+        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+    };
+    const struct sock_fprog program = {.len = sizeof rules / sizeof *rules, .filter = rules};
+    return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
+}
+
+enum { CANNOT_FORBID = 77 };
+
+static int write_without_links(const char *path)
+{
+    file_writer writer;
+    if (!forbid_links())
+        return CANNOT_FORBID;
+    if (file_writer_open(&writer, path) != HELIO_OK)
+        return 1;
+    fputs("whole", writer.stream);
+    return file_writer_commit(&writer) == HELIO_OK ? 0 : 2;
+}
+
+static void file_is_whole_where_links_are_forbidden(void **state)
+{
+    place *p = *state;
+    int status = run_apart(write_without_links, in_place(p, "picture.exr"));
+    assert_true(WIFEXITED(status));
+    if (WEXITSTATUS(status) == CANNOT_FORBID) {
+        print_message("skipped, links cannot be forbidden here\n");
+        skip();
+        return;
+    }
+    assert_int_equal(WEXITSTATUS(status), 0);
+    expect_text(p, p->path, "whole");
+    assert_int_equal(entries(p), 1);
 }
 
 static void two_writers_of_one_file_do_not_meet(void **state)
@@ -799,8 +969,13 @@ int main(void)
         cmocka_unit_test(third_dimension_is_stratified),
         cmocka_unit_test(tangent_frames_are_orthonormal_and_right_handed),
         cmocka_unit_test(luminance_of_white_is_one),
+        cmocka_unit_test(clock_counts_seconds),
         in_directory(file_is_replaced_only_when_it_is_complete),
         in_directory(abandoned_file_leaves_nothing),
+        in_directory(file_has_no_name_until_it_is_complete),
+        in_directory(file_without_a_folder_goes_to_the_current_one),
+        in_directory(killed_writer_leaves_nothing),
+        in_directory(file_is_whole_where_links_are_forbidden),
         in_directory(two_writers_of_one_file_do_not_meet),
         in_directory(failed_commit_leaves_nothing),
         in_directory(failed_write_leaves_nothing),

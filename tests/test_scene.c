@@ -3,6 +3,7 @@
 #include "core/specification.h"
 #include "scene/camera.h"
 #include "scene/mesh.h"
+#include "scene/mesh_process.h"
 #include "scene/scene.h"
 
 #include <heliostat/heliostat.h>
@@ -920,6 +921,41 @@ static const char *test_data(const char *name)
     return path;
 }
 
+/* What happens while a file is read, told at great length, and then one thing that matters. */
+static helio_status import_talkatively(helio_context *own, const char *path, const mesh_import_options *options,
+                                       mesh_arrays *arrays)
+{
+    (void)options, (void)arrays;
+    for (int i = 0; i < 1000; i++)
+        context_log(own, i % 2 ? HELIO_LOG_INFO : HELIO_LOG_DEBUG, "%s: still at it", path);
+    context_log(own, HELIO_LOG_WARNING, "%s: this matters", path);
+    return HELIO_ERR_DATA;
+}
+
+static char heard[512];
+
+static void keep_message(void *user, helio_log_level level, const char *message)
+{
+    (void)user, (void)level;
+    size_t used = strlen(heard);
+    snprintf(heard + used, sizeof heard - used, "%s\n", message);
+}
+
+static void messages_below_the_log_level_do_not_use_up_the_limit(void **state)
+{
+    (void)state;
+    const mesh_limits limits = {
+        .memory = UINT64_C(1) << 28, .seconds = 60, .texture_seconds = 60, .clock_seconds = 120};
+    helio_context *own;
+    mesh_delivery delivery;
+    heard[0] = 0;
+    assert_ok(helio_context_create(
+        &(helio_context_desc){.threads = 1, .log_level = HELIO_LOG_WARNING, .log = keep_message}, &own));
+    assert_int_equal(mesh_process_import(own, "some.ply", import_talkatively, &limits, &delivery), HELIO_ERR_DATA);
+    assert_string_equal(heard, "some.ply: this matters\n");
+    helio_context_destroy(own);
+}
+
 static void known_meshes_are_read(void **state)
 {
     (void)state;
@@ -1645,6 +1681,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(gltf_materials_are_ggx, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(triangles_without_material_get_the_default, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(glb_is_read, make_folder, remove_folder),
+        cmocka_unit_test(messages_below_the_log_level_do_not_use_up_the_limit),
         cmocka_unit_test(known_meshes_are_read),
 #else
         cmocka_unit_test(meshes_cannot_be_loaded_without_assimp),

@@ -352,15 +352,18 @@ static void png_texels_are_those_of_the_file(void **state)
     size_t size;
     unsigned char *png = make_png(16, 16, rgba[0], &size);
     helio_texture texture = {.wrap_u = HELIO_WRAP_MIRROR};
-    assert_ok(texture_decode(context, "all.png", png, size, TEXTURE_MAX_BYTES, &texture));
+    assert_ok(texture_decode(context, "all.png", png, size, TEXTURE_MAX_BYTES, NULL, &texture));
     assert_int_equal(texture.width, 16);
     assert_int_equal(texture.height, 16);
     assert_int_equal(texture.wrap_u, HELIO_WRAP_MIRROR);
     assert_memory_equal(texture.rgba, rgba, sizeof rgba);
     texture_release(context, &texture);
 
-    assert_refused(texture_decode(context, "all.png", png, size, 1023, &texture), HELIO_ERR_DATA, "too large");
-    assert_refused(texture_decode(context, "all.png", png, size / 2, 1024, &texture), HELIO_ERR_DATA, "all.png");
+    assert_refused(texture_decode(context, "all.png", png, size, 1023, NULL, &texture), HELIO_ERR_DATA,
+                   "all.png is too large: 16 x 16 pixels, where 255 in all are allowed; if you trust it, raise");
+    assert_refused(texture_decode(context, "all.png", png, size, 1023, "make room", &texture), HELIO_ERR_DATA,
+                   "where 255 in all are allowed; make room");
+    assert_refused(texture_decode(context, "all.png", png, size / 2, 1024, NULL, &texture), HELIO_ERR_DATA, "all.png");
     assert_null(texture.rgba);
     free(png);
 }
@@ -375,7 +378,7 @@ static void png_of_16_bits_becomes_8(void **state)
     png_alloc_size_t size = sizeof png;
     assert_true(png_image_write_to_memory(&image, png, &size, 0, rgba, 0, NULL));
     helio_texture texture = {0};
-    assert_ok(texture_decode(context, "deep.png", png, size, TEXTURE_MAX_BYTES, &texture));
+    assert_ok(texture_decode(context, "deep.png", png, size, TEXTURE_MAX_BYTES, NULL, &texture));
     const uint8_t expected[8] = {0, 0, 1, 255, 255, 254, 77, 255};
     assert_memory_equal(texture.rgba, expected, sizeof expected);
     texture_release(context, &texture);
@@ -388,11 +391,11 @@ static void large_pictures_are_refused(void **state)
     size_t size;
     helio_texture texture = {0};
     unsigned char *png = make_png(16385, 1, rgba, &size);
-    assert_refused(texture_decode(context, "wide.png", png, size, TEXTURE_MAX_BYTES, &texture), HELIO_ERR_DATA,
+    assert_refused(texture_decode(context, "wide.png", png, size, TEXTURE_MAX_BYTES, NULL, &texture), HELIO_ERR_DATA,
                    "wide.png is too large: 16385 x 1 pixels, where 16384");
     free(png);
     png = make_png(1, 16384, rgba, &size);
-    assert_ok(texture_decode(context, "high.png", png, size, TEXTURE_MAX_BYTES, &texture));
+    assert_ok(texture_decode(context, "high.png", png, size, TEXTURE_MAX_BYTES, NULL, &texture));
     assert_int_equal(texture.height, 16384);
     texture_release(context, &texture);
     free(png);
@@ -406,7 +409,7 @@ static void png_textures_need_png(void **state)
     (void)state;
     const unsigned char png[] = "\x89PNG\r\n\x1a\n";
     helio_texture texture = {0};
-    assert_refused(texture_decode(context, "a.png", png, 8, TEXTURE_MAX_BYTES, &texture), HELIO_ERR_UNSUPPORTED,
+    assert_refused(texture_decode(context, "a.png", png, 8, TEXTURE_MAX_BYTES, NULL, &texture), HELIO_ERR_UNSUPPORTED,
                    "a.png is PNG, which this build cannot read");
 }
 
@@ -437,7 +440,7 @@ static void jpeg_texels_are_those_of_the_file(void **state)
     jpeg_destroy_compress(&jpeg);
 
     helio_texture texture = {0};
-    assert_ok(texture_decode(context, "grey.jpg", bytes, size, TEXTURE_MAX_BYTES, &texture));
+    assert_ok(texture_decode(context, "grey.jpg", bytes, size, TEXTURE_MAX_BYTES, NULL, &texture));
     free(bytes);
     assert_int_equal(texture.width, 8);
     for (size_t i = 0; i < 64; i++)
@@ -452,9 +455,9 @@ static void textures_are_png_or_jpeg(void **state)
     const char pfm[] = "PF\n1 1\n-1\n............";
     helio_texture texture = {0};
     assert_refused(
-        texture_decode(context, "a.pfm", (const unsigned char *)pfm, sizeof pfm - 1, TEXTURE_MAX_BYTES, &texture),
+        texture_decode(context, "a.pfm", (const unsigned char *)pfm, sizeof pfm - 1, TEXTURE_MAX_BYTES, NULL, &texture),
         HELIO_ERR_DATA, "a.pfm is PFM, which cannot be used here; give PNG or JPEG");
-    assert_refused(texture_decode(context, "a.tga", (const unsigned char *)"", 0, TEXTURE_MAX_BYTES, &texture),
+    assert_refused(texture_decode(context, "a.tga", (const unsigned char *)"", 0, TEXTURE_MAX_BYTES, NULL, &texture),
                    HELIO_ERR_DATA, "empty");
 }
 

@@ -139,6 +139,11 @@ uint32_t helio_context_threads(const helio_context *context)
     return context->desc.threads;
 }
 
+helio_log_level context_log_level(const helio_context *context)
+{
+    return context->desc.log_level;
+}
+
 isa context_isa(const helio_context *context)
 {
     return context->isa;

@@ -17,6 +17,9 @@ void context_release(helio_context *context, void *memory); /* NULL is fine */
 void context_log(helio_context *context, helio_log_level level, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* Messages above this level are not shown. */
+helio_log_level context_log_level(const helio_context *context);
+
 /* The instruction set of the kernels. */
 isa context_isa(const helio_context *context);
 

@@ -50,23 +50,72 @@ helio_status file_read(helio_context *context, const char *path, size_t max_byte
     return status;
 }
 
-/* Opens a new file beside path, under a name that nobody else has. -1, with errno, if that cannot be done. */
-static int open_temporary(file_writer *writer)
+static int directory_length(const char *path)
 {
-    const char *slash = strrchr(writer->path, '/');
-    int directory_length = slash ? (int)(slash - writer->path) + 1 : 0;
+    const char *slash = strrchr(path, '/');
+    return slash ? (int)(slash - path) + 1 : 0;
+}
+
+/* Gives a name to a file that has none. */
+static int link_unnamed(int descriptor, const char *name)
+{
+    char link[32];
+    snprintf(link, sizeof link, "/proc/self/fd/%d", descriptor);
+    return linkat(AT_FDCWD, link, AT_FDCWD, name, AT_SYMLINK_FOLLOW);
+}
+
+/* Takes a name beside path that nobody else has: for the file that has none, or, where unnamed is -1, for a new one,
+ * whose descriptor it returns. -1, with errno, if that cannot be done. */
+static int take_name(file_writer *writer, int unnamed)
+{
     for (unsigned attempt = 0; attempt < 1000; attempt++) {
-        int length = snprintf(writer->temporary, sizeof writer->temporary, "%.*s.heliostat-%ld-%u", directory_length,
-                              writer->path, (long)getpid(), attempt);
+        int length = snprintf(writer->temporary, sizeof writer->temporary, "%.*s.heliostat-%ld-%u",
+                              directory_length(writer->path), writer->path, (long)getpid(), attempt);
         if (length < 0 || (size_t)length >= sizeof writer->temporary) {
             errno = ENAMETOOLONG;
-            return -1;
+            break;
         }
-        int descriptor = open(writer->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (descriptor >= 0 || errno != EEXIST)
-            return descriptor;
+        int result = unnamed >= 0 ? link_unnamed(unnamed, writer->temporary)
+                                  : open(writer->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (result >= 0)
+            return result;
+        if (errno != EEXIST)
+            break;
     }
+    writer->temporary[0] = 0;
     return -1;
+}
+
+/* A file in the directory of path that has no name, or -1 where there is no such thing. */
+static int make_unnamed(const char *path)
+{
+#ifdef O_TMPFILE
+    char directory[sizeof((file_writer *)0)->temporary];
+    int length = directory_length(path);
+    if ((size_t)length >= sizeof directory)
+        return -1;
+    snprintf(directory, sizeof directory, "%.*s", length > 0 ? length : 1, length > 0 ? path : ".");
+    return open(directory, O_RDWR | O_TMPFILE | O_CLOEXEC, 0666);
+#else
+    (void)path;
+    return -1;
+#endif
+}
+
+/* The same, if it can be given a name later. Only another such file, which gets one, can tell: there may be no /proc,
+ * the file system may have no links, or they may be forbidden. */
+static int open_unnamed(file_writer *writer)
+{
+    int other = make_unnamed(writer->path);
+    if (other < 0)
+        return -1;
+    bool has_name = take_name(writer, other) >= 0;
+    close(other);
+    if (!has_name)
+        return -1;
+    unlink(writer->temporary);
+    writer->temporary[0] = 0;
+    return make_unnamed(writer->path);
 }
 
 helio_status file_writer_open(file_writer *writer, const char *path)
@@ -79,11 +128,11 @@ helio_status file_writer_open(file_writer *writer, const char *path)
     if (exists && !S_ISREG(existing.st_mode))
         return fail(HELIO_ERR_IO, "%s is %s; name a file to write", path,
                     S_ISDIR(existing.st_mode) ? "a directory" : "a device or pipe, which cannot be replaced");
-    int descriptor = open_temporary(writer);
-    if (descriptor < 0) {
-        writer->temporary[0] = 0;
+    int descriptor = open_unnamed(writer);
+    if (descriptor < 0)
+        descriptor = take_name(writer, -1);
+    if (descriptor < 0)
         return fail(HELIO_ERR_IO, "%s cannot be written: %s", path, strerror(errno));
-    }
     writer->stream = fdopen(descriptor, "w+b");
     if (writer->stream == NULL) {
         close(descriptor);
@@ -96,10 +145,12 @@ helio_status file_writer_open(file_writer *writer, const char *path)
 helio_status file_writer_commit(file_writer *writer)
 {
     errno = 0;
-    bool bad = ferror(writer->stream) != 0;
-    bad |= fclose(writer->stream) != 0;
+    bool good = ferror(writer->stream) == 0 && fflush(writer->stream) == 0;
+    if (good && writer->temporary[0] == 0)
+        good = take_name(writer, fileno(writer->stream)) >= 0;
+    good = fclose(writer->stream) == 0 && good;
     writer->stream = NULL;
-    if (!bad && rename(writer->temporary, writer->path) == 0) {
+    if (good && rename(writer->temporary, writer->path) == 0) {
         writer->temporary[0] = 0;
         return HELIO_OK;
     }

@@ -13,11 +13,13 @@ helio_status file_read(helio_context *context, const char *path, size_t max_byte
 /* A file that appears under its path only when it is complete. */
 typedef struct file_writer {
     const char *path;
-    char temporary[4096]; /* in the same directory, so that the rename is atomic */
+    char temporary[4096]; /* in the same directory, so that the rename is atomic; "" while the file has no name */
     FILE *stream;
 } file_writer;
 
-/* Opens the temporary file. HELIO_ERR_IO if the directory cannot be written. */
+/* Opens the temporary file. Where the system has files without a name (Linux, on most file systems), it is one of these
+ * until it is complete, so that a process that is killed leaves nothing. HELIO_ERR_IO if the directory cannot be
+ * written. */
 helio_status file_writer_open(file_writer *writer, const char *path);
 
 /* Flushes, checks for errors of all writes so far (disk full) and renames. The temporary file is gone either way. */

@@ -1,16 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
  * The tiles of a frame, divided among the threads. */
+#include "core/clock.h"
 #include "core/context.h"
 #include "cpu/renderer.h"
 
-#include <time.h>
-
 double frame_milliseconds(void)
 {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+    return 1e3 * clock_seconds();
 }
 
 static void share_counts(struct frame *frame, const frame_counts *counts)

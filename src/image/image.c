@@ -113,9 +113,9 @@ helio_status image_check_size(const image_file *file, uint64_t width, uint64_t h
                     file->path, width, height, max_edge);
     if (width * height > file->max_pixels)
         return fail(HELIO_ERR_DATA,
-                    "%s is too large: %" PRIu64 " x %" PRIu64 " pixels, where %" PRIu64
-                    " in all are allowed; if you trust it, raise max_pixels (--max-pixels)",
-                    file->path, width, height, file->max_pixels);
+                    "%s is too large: %" PRIu64 " x %" PRIu64 " pixels, where %" PRIu64 " in all are allowed; %s",
+                    file->path, width, height, file->max_pixels,
+                    file->way_out != NULL ? file->way_out : "if you trust it, raise max_pixels (--max-pixels)");
     if (file->size < least_bytes)
         return fail(HELIO_ERR_DATA,
                     "%s is truncated or damaged: its %zu bytes cannot hold the %" PRIu64 " x %" PRIu64

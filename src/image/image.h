@@ -15,7 +15,8 @@ typedef struct image_file {
     const unsigned char *bytes;
     size_t size;
     uint64_t max_pixels;
-    uint32_t max_edge; /* pixels each way; default: IMAGE_EDGE_LIMIT */
+    const char *way_out; /* for pictures of more pixels, as the end of a sentence; default: to raise max_pixels */
+    uint32_t max_edge;   /* pixels each way; default: IMAGE_EDGE_LIMIT */
     bool without_alpha;
 
     /* NULL for linear floats. Else only PNG and JPEG are read, and image_create() puts memory here: for RGBA of 8 bits

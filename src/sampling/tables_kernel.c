@@ -22,26 +22,18 @@ static inline float weigh(const float *texel, float relative_solid_angle)
 }
 
 /* The weights of a row, and the largest of them. The bits of floats that are not negative are ordered like the floats,
- * and compilers are freer to reorder the maximum of integers. */
-static float weigh_texels(const float *restrict rgb, const float *restrict solid_angles, uint32_t size,
-                          float *restrict weights)
+ * and compilers are freer to reorder the maximum of integers. by_angle is a constant where this is expanded. */
+static inline __attribute__((always_inline)) float weigh_texels(bool by_angle, const float *restrict rgb,
+                                                                const float *restrict solid_angles, uint32_t size,
+                                                                float *restrict weights)
 {
     float quarter_texels = 0.25f * (float)size * (float)size;
     int32_t largest_bits = 0;
-    if (solid_angles == NULL) {
 #pragma omp simd reduction(max : largest_bits)
-        for (uint32_t i = 0; i < size; i++) {
-            weights[i] = weigh(rgb + 3 * (size_t)i, 1.0f);
-            int32_t bits = bits_of_float(weights[i]);
-            largest_bits = bits > largest_bits ? bits : largest_bits;
-        }
-    } else {
-#pragma omp simd reduction(max : largest_bits)
-        for (uint32_t i = 0; i < size; i++) {
-            weights[i] = weigh(rgb + 3 * (size_t)i, solid_angles[i] * quarter_texels);
-            int32_t bits = bits_of_float(weights[i]);
-            largest_bits = bits > largest_bits ? bits : largest_bits;
-        }
+    for (uint32_t i = 0; i < size; i++) {
+        weights[i] = weigh(rgb + 3 * (size_t)i, by_angle ? solid_angles[i] * quarter_texels : 1.0f);
+        int32_t bits = bits_of_float(weights[i]);
+        largest_bits = bits > largest_bits ? bits : largest_bits;
     }
     return float_of_bits(largest_bits);
 }
@@ -89,7 +81,9 @@ row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, uint32_t si
 {
     float weights[CUBE_MAX_SIZE];
     uint32_t integers[PIECE], sum = 0;
-    int exponent = row_exponent(weigh_texels(rgb, solid_angles, size, weights), tables_summand_bits(size));
+    float largest = solid_angles != NULL ? weigh_texels(true, rgb, solid_angles, size, weights)
+                                         : weigh_texels(false, rgb, NULL, size, weights);
+    int exponent = row_exponent(largest, tables_summand_bits(size));
     float factor = ldexpf(1.0f, exponent);
     for (uint32_t first = 0; first < size; first += PIECE) {
         uint32_t count = size - first < PIECE ? size - first : PIECE;

@@ -340,19 +340,25 @@ helio_status helio_mesh_create(helio_context *context, const helio_mesh_desc *de
     return HELIO_OK;
 }
 
+void mesh_arrays_release(helio_context *context, mesh_arrays *arrays)
+{
+    context_release(context, arrays->positions);
+    context_release(context, arrays->normals);
+    context_release(context, arrays->triangles);
+    context_release(context, arrays->triangle_materials);
+    context_release(context, arrays->materials);
+    context_release(context, arrays->texture_coordinates);
+    context_release(context, arrays->material_textures);
+    for (uint32_t i = 0; i < arrays->texture_count; i++)
+        texture_release(context, &arrays->textures[i]);
+    context_release(context, arrays->textures);
+    *arrays = (mesh_arrays){0};
+}
+
 void helio_mesh_destroy(helio_context *context, helio_mesh *mesh)
 {
     if (mesh == NULL)
         return;
-    context_release(context, mesh->positions);
-    context_release(context, mesh->normals);
-    context_release(context, mesh->triangles);
-    context_release(context, mesh->triangle_materials);
-    context_release(context, mesh->materials);
-    context_release(context, mesh->texture_coordinates);
-    context_release(context, mesh->material_textures);
-    for (uint32_t i = 0; i < mesh->texture_count; i++)
-        texture_release(context, &mesh->textures[i]);
-    context_release(context, mesh->textures);
+    mesh_arrays_release(context, mesh);
     context_release(context, mesh);
 }

@@ -21,20 +21,10 @@ helio_status mesh_desc_check(const helio_mesh_desc *desc);
 /* Unit normal of the counter-clockwise side. False for triangles without area: repeated or collinear corners. */
 bool mesh_triangle_normal(const helio_mesh *mesh, uint32_t triangle, vec3 *normal);
 
-/* Flat arrays, all memory of the context: the form in which an importer, in whatever process it runs, returns a file.
+/* The form in which an importer, in whatever process it runs, returns a file: a mesh of which only the arrays and their
+ * counts are filled in, and nothing is checked. Normals are zero where the file has none, NULL if it has none at all.
  */
-typedef struct mesh_arrays {
-    uint32_t vertex_count, triangle_count, material_count;
-    float *positions;             /* [vertex_count][3] */
-    float *normals;               /* [vertex_count][3], zero where the file has none; NULL if it has none at all */
-    uint32_t *triangles;          /* [triangle_count][3] */
-    uint32_t *triangle_materials; /* [triangle_count], or NULL if material_count is 0 */
-    helio_material *materials;    /* [material_count], or NULL */
-    float *texture_coordinates;   /* [vertex_count][2], or NULL if texture_count is 0 */
-    uint32_t texture_count;
-    helio_texture *textures;                    /* [texture_count], or NULL */
-    helio_material_textures *material_textures; /* [material_count], or NULL */
-} mesh_arrays;
+typedef helio_mesh mesh_arrays;
 
 /* What an importer is told. */
 typedef struct mesh_import_options {
@@ -51,6 +41,7 @@ typedef helio_status (*mesh_importer)(helio_context *context, const char *path, 
 helio_status mesh_import(helio_context *context, const char *path, const mesh_import_options *options,
                          mesh_arrays *arrays);
 
+/* All that they point to; what is left is zero. */
 void mesh_arrays_release(helio_context *context, mesh_arrays *arrays);
 
 /* The same arrays as helio_mesh_create() takes them. They stay where they are. */

@@ -169,7 +169,7 @@ static void send_log(void *user, helio_log_level level, const char *message)
 static helio_status import(const mesh_child *child)
 {
     helio_context_desc desc = {
-        .threads = 1, .log_level = HELIO_LOG_DEBUG, .log = send_log, .user = (void *)child, .isa = child->isa};
+        .threads = 1, .log_level = child->log_level, .log = send_log, .user = (void *)child, .isa = child->isa};
     const mesh_import_options options = {
         .max_texture_pixels = child->limits->texture_pixels, .on_textures = extend_time, .user = (void *)child};
     helio_context *context;

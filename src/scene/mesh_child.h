@@ -27,7 +27,8 @@ typedef struct mesh_child {
     mesh_importer import;
     const mesh_limits *limits;
     const char *isa;
-    int memory, messages; /* descriptors, above 2: a memory file for the mesh, the end of a pipe */
+    helio_log_level log_level; /* what the host would not show is not sent */
+    int memory, messages;      /* descriptors, above 2: a memory file for the mesh, the end of a pipe */
 } mesh_child;
 
 /* Never returns. Nothing of the host is used: not its context, its log, its handlers or its open files. */

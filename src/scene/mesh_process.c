@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/mesh_process.h"
 
+#include "core/clock.h"
 #include "core/context.h"
 #include "core/error.h"
 #include "scene/mesh_child.h"
@@ -24,7 +25,7 @@
 
 enum {
     SLICE = 100,         /* milliseconds between two looks at the child */
-    MAX_LOG_LINES = 100, /* of one file */
+    MAX_LOG_LINES = 100, /* of one file, among those that the host wants to see */
     MAX_LEFT = 2048      /* messages that a dead child may leave: more than a pipe holds */
 };
 
@@ -63,13 +64,6 @@ typedef struct mesh_process {
     mesh_message message; /* received so far: */
     size_t received;
 } mesh_process;
-
-static double clock_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 /* ---- start ------------------------------------------------------------------------------ */
 
@@ -122,6 +116,7 @@ static helio_status start(mesh_process *process, mesh_importer import)
             .import = import,
             .limits = process->limits,
             .isa = helio_context_isa(process->context),
+            .log_level = context_log_level(process->context),
             .memory = process->memory,
             .messages = ends[1],
         };

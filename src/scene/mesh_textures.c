@@ -93,11 +93,15 @@ static helio_status find_file(const char *mesh_path, const char *name, char path
     return HELIO_OK;
 }
 
-/* What the next texture may take. */
-static uint64_t bytes_left(const texture_list *list)
+/* The next texture must keep both limits: the one for each, and the one for all together. */
+static helio_status decode(const texture_list *list, const char *name, const unsigned char *bytes, size_t size,
+                           helio_texture *texture)
 {
     uint64_t left = TEXTURE_MAX_BYTES - list->bytes, pixels = list->file->options->max_texture_pixels;
-    return pixels < left / 4 ? 4 * pixels : left;
+    if (pixels <= left / 4)
+        return texture_decode(list->file->context, name, bytes, size, 4 * pixels, NULL, texture);
+    return texture_decode(list->file->context, name, bytes, size, left,
+                          "the textures of a mesh may have 512 MiB of texels together; make them smaller", texture);
 }
 
 static helio_status read_file(const texture_list *list, const char *name, helio_texture *texture)
@@ -108,7 +112,7 @@ static helio_status read_file(const texture_list *list, const char *name, helio_
     size_t size;
     HELIO_TRY(find_file(list->file->path, name, path));
     HELIO_TRY(file_read(context, path, TEXTURE_MAX_BYTES, &bytes, &size));
-    helio_status status = texture_decode(context, path, bytes, size, bytes_left(list), texture);
+    helio_status status = decode(list, path, bytes, size, texture);
     context_release(context, bytes);
     return status;
 }
@@ -122,8 +126,7 @@ static helio_status read_embedded(const texture_list *list, const struct aiTextu
     snprintf(name, sizeof name, "%s, picture %u,", list->file->path, index);
     if (from->mHeight != 0 || from->pcData == NULL)
         return fail(HELIO_ERR_DATA, "%s is neither PNG nor JPEG", name);
-    return texture_decode(list->file->context, name, (const unsigned char *)from->pcData, from->mWidth,
-                          bytes_left(list), texture);
+    return decode(list, name, (const unsigned char *)from->pcData, from->mWidth, texture);
 }
 
 /* Gives the source a texture of ours. HELIO_ERR_MEMORY is the only failure, all others are warnings. */

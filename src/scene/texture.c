@@ -87,7 +87,7 @@ helio_status texture_check(const helio_texture *texture)
 }
 
 helio_status texture_decode(helio_context *context, const char *name, const unsigned char *bytes, size_t size,
-                            uint64_t max_bytes, helio_texture *texture)
+                            uint64_t max_bytes, const char *way_out, helio_texture *texture)
 {
     uint8_t *texels = NULL;
     const image_file file = {.context = context,
@@ -95,6 +95,7 @@ helio_status texture_decode(helio_context *context, const char *name, const unsi
                              .bytes = bytes,
                              .size = size,
                              .max_pixels = max_bytes / 4,
+                             .way_out = way_out,
                              .max_edge = TEXTURE_MAX_EDGE,
                              .texels = &texels};
     helio_image *image;

@@ -32,10 +32,10 @@ static inline uint64_t texture_bytes(const helio_texture *texture)
     return UINT64_C(4) * texture->width * texture->height;
 }
 
-/* Decodes a PNG or JPEG file in memory. name: for sentences; max_bytes: of texels. The texels are memory of the
- * context; wrap modes are left alone. */
+/* Decodes a PNG or JPEG file in memory. name: for sentences; max_bytes: of texels; way_out: how the sentence about more
+ * ends, or NULL: to raise max_pixels. The texels are memory of the context; wrap modes are left alone. */
 helio_status texture_decode(helio_context *context, const char *name, const unsigned char *bytes, size_t size,
-                            uint64_t max_bytes, helio_texture *texture);
+                            uint64_t max_bytes, const char *way_out, helio_texture *texture);
 void texture_release(helio_context *context, helio_texture *texture);
 
 #endif
