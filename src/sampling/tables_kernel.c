@@ -82,7 +82,7 @@ row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, uint32_t si
     float weights[CUBE_MAX_SIZE];
     uint32_t integers[PIECE], sum = 0;
     float largest = solid_angles != NULL ? weigh_texels(true, rgb, solid_angles, size, weights)
-                                         : weigh_texels(false, rgb, NULL, size, weights);
+                                         : weigh_texels(false, rgb, solid_angles, size, weights);
     int exponent = row_exponent(largest, tables_summand_bits(size));
     float factor = ldexpf(1.0f, exponent);
     for (uint32_t first = 0; first < size; first += PIECE) {
