@@ -158,7 +158,7 @@ static bool has_said(const char *word)
 
 bool program_says(const char *word)
 {
-    for (int i = 0; i < 3000; i++) {
+    for (int i = 0; i < 20000; i++) {
         if (has_said(word))
             return true;
         usleep(10000);

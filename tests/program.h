@@ -45,7 +45,7 @@ extern char program_out[1 << 17], program_err[1 << 17];
 pid_t start_program(const char *line);
 pid_t start_program_words(const char *const *words);
 
-/* Waits half a minute at most until the program says the word on stdout or stderr. Did it? The program goes on. */
+/* Waits until the program says the word on stdout or stderr, minutes at most. Did it? The program goes on. */
 bool program_says(const char *word);
 
 /* Returns the exit code; minus the signal's number where a signal ended the program. usage: of the program with the

@@ -355,8 +355,9 @@ static void test_limits_hold_for_the_mesh(void **state)
 static void test_interrupt_stops_without_a_report(void **state)
 {
     (void)state;
-    pid_t child = start_program("bench --stages tables,estimate --env constant:1,1,1 --env-size 8 --map-size 16x8 "
-                                "--repeat 101 --spp 65536 --json b.json");
+    pid_t child =
+        start_program("bench --stages tables,estimate --isa best --env constant:1,1,1 --env-size 8 --map-size 16x8 "
+                      "--repeat 101 --spp 65536 --json b.json");
     bool has_begun = program_says("memcpy");
     kill(child, SIGINT);
     int code = finish_program(child, NULL);
