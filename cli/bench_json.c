@@ -97,7 +97,7 @@ static json_t *report_object(const bench *b)
     for (size_t i = 0; i < b->results.count; i++)
         json_array_append_new(list, result_object(&b->results.items[i]));
     json_object_set_new(object, "machine", machine_object(b));
-    json_object_set_new(object, "env", json_string(b->plan->source.label));
+    json_object_set_new(object, "env", json_string(b->plan->light.specification));
     json_object_set_new(object, "fma_peak_gflops", json_number(b->fma_peak_gflops));
     json_object_set_new(object, "memcpy_gb_per_s", json_number(b->memcpy_gb_per_s));
     json_object_set_new(object, "results", list);

@@ -224,7 +224,7 @@ static int choose_mesh(bench_plan *plan)
 static int check_json(const bench_plan *plan)
 {
     const char *path = plan->options->bench.json;
-    const char *const inputs[] = {plan->source.path, plan->mesh, NULL};
+    const char *const inputs[] = {plan->light.specification, plan->mesh, NULL};
     return path != NULL && strcmp(path, "-") != 0 ? output_file_check("json", path, inputs) : EXIT_CODE_OK;
 }
 
@@ -240,7 +240,7 @@ int bench_plan_make(bench_plan *plan, const cli_options *options)
     if (code == EXIT_CODE_OK && helio_layout_parse(options->layout, &plan->layout) != HELIO_OK)
         code = message_usage("%s", helio_last_error());
     if (code == EXIT_CODE_OK)
-        code = environment_source_parse(options->env, &plan->source);
+        code = light_source_choose(options->env, false, &plan->light);
     if (code == EXIT_CODE_OK)
         code = choose_mesh(plan);
     if (code == EXIT_CODE_OK)

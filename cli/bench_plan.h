@@ -3,7 +3,7 @@
 #ifndef HELIOSTAT_CLI_BENCH_PLAN_H
 #define HELIOSTAT_CLI_BENCH_PLAN_H
 
-#include "environment_source.h"
+#include "light_source.h"
 #include "list.h"
 #include "options.h"
 
@@ -48,7 +48,7 @@ typedef struct bench_plan {
     const char *isas[BENCH_LIST]; /* names of helio_isa_name() */
     helio_strategy strategies[BENCH_LIST];
     bench_material materials[BENCH_LIST];
-    environment_source source;
+    light_source light;
     helio_layout layout;
     char mesh[4096];       /* a file; empty: one that is made */
     const char *mesh_name; /* without folders */

@@ -22,6 +22,8 @@ const cli_command *command_find(const char *name);
 /* Each does its work and returns the exit code. */
 int command_render(const cli_options *options);
 int command_bench(const cli_options *options);
+int command_convert(const cli_options *options);
+int command_inspect(const cli_options *options);
 int command_info(const cli_options *options);
 int command_help(const cli_options *options);
 

@@ -22,24 +22,25 @@ static int open_context(bench *b)
     return bench_check(helio_context_create(&desc, &b->context));
 }
 
-/* The cube of --env. */
-static helio_status make_source(bench *b, const environment_pixels *pixels)
+/* The cube of the first frame of --env. */
+static helio_status make_light(bench *b, helio_source *source)
 {
-    helio_environment_desc desc = {.width = pixels->width, .height = pixels->height};
-    helio_layout wanted = b->plan->layout != HELIO_LAYOUT_AUTO ? b->plan->layout : pixels->layout;
-    helio_status status = helio_layout_guess(desc.width, desc.height, wanted, &desc.layout);
+    const helio_environment_desc desc = {0};
+    helio_source_frame frame;
+    helio_status status = helio_environment_create(b->context, &desc, &b->source);
     if (status == HELIO_OK)
-        status = helio_environment_create(b->context, &desc, &b->source);
-    return status == HELIO_OK ? helio_environment_update(b->source, pixels->rgb, NULL) : status;
+        status = helio_source_next(source, &frame);
+    return status == HELIO_OK ? helio_source_apply(source, &frame, b->source, NULL) : status;
 }
 
 static int load_source(bench *b)
 {
-    environment_pixels pixels;
-    helio_status status = environment_source_read(&b->plan->source, b->context, b->plan->options->max_pixels, &pixels);
+    const helio_source_desc desc = {.layout = b->plan->layout, .max_pixels = b->plan->options->max_pixels};
+    helio_source *source;
+    helio_status status = helio_source_open(b->context, b->plan->light.specification, &desc, &source);
     if (status == HELIO_OK)
-        status = make_source(b, &pixels);
-    environment_pixels_release(&pixels, b->context);
+        status = make_light(b, source);
+    helio_source_close(source);
     return bench_check(status);
 }
 

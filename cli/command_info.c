@@ -38,6 +38,11 @@ static const feature features[] = {
 #else
     {"Embree", "trace rays", false},
 #endif
+#ifdef HELIO_WITH_CAIRO
+    {"cairo", "draw figures", true},
+#else
+    {"cairo", "draw figures", false},
+#endif
 };
 
 /* The instruction set that a context takes, and the others that this machine has kernels for. */

@@ -40,12 +40,26 @@ static void print_section(const help_section *section)
         print_entry(section->entries[i].term, section->entries[i].text);
 }
 
-/* Command lines are long: the meaning stands above each. */
-static void print_examples(void)
+static bool is_example_of(const char *line, const char *command)
 {
-    printf("\n%s\n", help_examples.title);
-    for (size_t i = 0; i < help_examples.count; i++)
-        printf("%s  # %s\n  %s\n", i ? "\n" : "", help_examples.entries[i].text, help_examples.entries[i].term);
+    size_t program = strlen("heliostat "), length = strlen(command);
+    return strncmp(line + program, command, length) == 0 &&
+           (line[program + length] == ' ' || line[program + length] == 0);
+}
+
+/* Command lines are long: the meaning stands above each. command: NULL for all. */
+static void print_examples(const char *command)
+{
+    const char *between = "";
+    for (size_t i = 0; i < help_examples.count; i++) {
+        const help_entry *example = &help_examples.entries[i];
+        if (command != NULL && !is_example_of(example->term, command))
+            continue;
+        if (between[0] == 0)
+            printf("\n%s\n", help_examples.title);
+        printf("%s  # %s\n  %s\n", between, example->text, example->term);
+        between = "\n";
+    }
 }
 
 static void print_option(const cli_option *option)
@@ -80,22 +94,21 @@ void help_program(void)
     printf("\nOptions\n");
     print_entry("--help", "print this help; after a command, the help of that command");
     print_entry("--version", "print the version");
-    print_examples();
+    print_examples(NULL);
     printf("\nheliostat render --help shows all options of the main job.\n");
 }
 
 void help_command(const cli_command *command)
 {
     printf("heliostat %s: %s\n\nUsage: heliostat %s\n", command->name, command->summary, command->usage);
-    if (command->bit & (COMMAND_RENDER | COMMAND_BENCH))
+    if (command->bit & (COMMAND_RENDER | COMMAND_BENCH | COMMAND_CONVERT | COMMAND_INSPECT))
         printf("\nValues follow their option as --name VALUE or --name=VALUE; [defaults] stand in brackets.\n");
     for (int group = 0; group < GROUP_COUNT; group++)
         print_group((option_group)group, command->bit);
-    if (command->bit != COMMAND_RENDER)
-        return;
     for (size_t i = 0; i < help_form_count; i++)
-        print_section(&help_forms[i]);
-    print_examples();
+        if (help_forms[i].commands & command->bit)
+            print_section(&help_forms[i]);
+    print_examples(command->name);
 }
 
 int command_help(const cli_options *options)

@@ -25,6 +25,7 @@ typedef struct help_section {
     const char *title;
     const help_entry *entries;
     size_t count;
+    unsigned commands; /* whose help shows it */
 } help_section;
 
 extern const char help_tagline[];

@@ -2,9 +2,9 @@
 #include "json_file.h"
 
 #include "message.h"
+#include "output_file.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -21,21 +21,6 @@ json_t *json_whole(uint64_t value)
     return json_integer((json_int_t)value);
 }
 
-/* Opens a new file beside path; its name stays within temporary. */
-static FILE *open_temporary(const char *path, char *temporary, size_t size)
-{
-    const char *slash = strrchr(path, '/');
-    int directory_length = slash ? (int)(slash - path) + 1 : 0;
-    int length =
-        snprintf(temporary, size, "%.*s.%s.%ld", directory_length, path, path + directory_length, (long)getpid());
-    if (length < 0 || (size_t)length >= size) {
-        errno = ENAMETOOLONG;
-        return NULL;
-    }
-    int descriptor = open(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    return descriptor < 0 ? NULL : fdopen(descriptor, "w");
-}
-
 static int fail_to_write(const char *option, const char *path)
 {
     return message_failure("%s cannot be written: %s; give --%s another FILE", path, strerror(errno), option);
@@ -46,7 +31,7 @@ int json_file_write(const char *option, const char *path, const json_t *object)
     if (object == NULL)
         return message_failure("%s cannot be written: no memory", path);
     char temporary[4096];
-    FILE *stream = open_temporary(path, temporary, sizeof temporary);
+    FILE *stream = output_file_open(path, temporary, sizeof temporary);
     if (stream == NULL)
         return fail_to_write(option, path);
     bool good = json_dumpf(object, stream, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) == 0;

@@ -7,11 +7,16 @@
 #include <heliostat/core.h>
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 const cli_command command_table[] = {
-    {"render", COMMAND_RENDER, "render [options]", "light a mesh by an environment map and write the picture",
-     command_render},
+    {"render", COMMAND_RENDER, "render [options]",
+     "light a mesh by environment maps, still or moving, and write pictures or a video", command_render},
+    {"convert", COMMAND_CONVERT, "convert SRC [--to L] --out PATH [options]",
+     "write an environment map in another layout, size or file format", command_convert},
+    {"inspect", COMMAND_INSPECT, "inspect SRC [options]",
+     "tell what an environment map holds: layout, range, flux, bad pixels, the sun", command_inspect},
     {"bench", COMMAND_BENCH, "bench [options]", "measure how fast each stage is on this machine", command_bench},
     {"info", COMMAND_INFO, "info", "show the version, what this build can do, and the processor", command_info},
     {"help", COMMAND_HELP, "help [command] [--man]", "print the help of a command, or the manual page", command_help},
@@ -72,5 +77,6 @@ static int run(int count, char **arguments)
 
 int main(int count, char **arguments)
 {
+    setenv("SVT_LOG", "1", 0); /* the AV1 encoder prints past FFmpeg's log; errors are told all the same */
     return close_output(run(count, arguments));
 }

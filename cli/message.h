@@ -17,4 +17,10 @@ int message_failure(const char *format, ...) __attribute__((format(printf, 1, 2)
 void message_warning(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void message_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+/* ---- a line that is drawn again and again, such as a progress bar; messages go above it ------------------------ */
+
+/* Text of ASCII; what is longer than a line of a terminal is cut. */
+void message_draw_line(const char *text);
+void message_clear_line(void);
+
 #endif

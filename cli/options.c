@@ -91,6 +91,11 @@ static int bad_value(const cli_option *option, const char *value)
     case OPTION_SIZE:
         return message_usage("--%s takes width x height, such as 1280x720, each from %.0f to %.0f, not '%s'",
                              option->name, minimum, maximum, value);
+    case OPTION_RANGE:
+        return message_usage(
+            "--%s takes first..last, such as 10..20, each from %.0f to %.0f and the last not before the "
+            "first, not '%s'",
+            option->name, minimum, maximum, value);
     case OPTION_TEXT: return message_usage("--%s takes a value that is not empty", option->name);
     case OPTION_FLAG: break;
     }
@@ -112,6 +117,21 @@ static bool parse_size(const char *text, double minimum, double maximum, uint32_
     return true;
 }
 
+static bool parse_range(const char *text, double minimum, double maximum, frame_range *range)
+{
+    char first[16];
+    const char *dots = strstr(text, "..");
+    if (dots == NULL || (size_t)(dots - text) >= sizeof first)
+        return false;
+    snprintf(first, sizeof first, "%.*s", (int)(dots - text), text);
+    frame_range parsed = {.is_given = true};
+    if (!number_parse_whole(first, minimum, maximum, &parsed.first) ||
+        !number_parse_whole(dots + 2, minimum, maximum, &parsed.last) || parsed.last < parsed.first)
+        return false;
+    *range = parsed;
+    return true;
+}
+
 /* Puts the value where it belongs; false if it is not one that the option takes. */
 static bool store_value(const cli_option *option, const char *value, cli_options *options)
 {
@@ -129,6 +149,7 @@ static bool store_value(const cli_option *option, const char *value, cli_options
         return number_parse(value, option->minimum, option->maximum, member);
     case OPTION_NUMBER: return number_parse(value, option->minimum, option->maximum, member);
     case OPTION_SIZE: return parse_size(value, option->minimum, option->maximum, member);
+    case OPTION_RANGE: return parse_range(value, option->minimum, option->maximum, member);
     }
     return false;
 }
@@ -182,6 +203,14 @@ static int take_word(cli_options *options, unsigned command, const char *command
         options->topic = word;
         return EXIT_CODE_OK;
     }
+    if ((command & (COMMAND_CONVERT | COMMAND_INSPECT)) && options->input == NULL) {
+        options->input = word;
+        return EXIT_CODE_OK;
+    }
+    if (command & (COMMAND_CONVERT | COMMAND_INSPECT))
+        return message_usage(
+            "%s takes one input, but both %s and %s are given; put a pattern such as '*.exr' in quotes", command_name,
+            options->input, word);
     if (command == COMMAND_RENDER)
         return message_usage("render does not know what '%s' is; write --mesh or --env before a file's name", word);
     return message_usage("%s does not know what '%s' is; heliostat %s --help shows what it takes", command_name, word,

@@ -13,7 +13,9 @@ enum {
     COMMAND_INFO = 1 << 1,
     COMMAND_HELP = 1 << 2,
     COMMAND_BENCH = 1 << 3,
-    COMMAND_ALL = COMMAND_RENDER | COMMAND_INFO | COMMAND_HELP | COMMAND_BENCH
+    COMMAND_CONVERT = 1 << 4,
+    COMMAND_INSPECT = 1 << 5,
+    COMMAND_ALL = COMMAND_RENDER | COMMAND_INFO | COMMAND_HELP | COMMAND_BENCH | COMMAND_CONVERT | COMMAND_INSPECT
 };
 
 /* Lists, separated by commas, that bench walks through; some are single values in other commands. */
@@ -24,6 +26,25 @@ typedef struct bench_options {
     bool quick;
 } bench_options;
 
+/* Frames first ... last of a sequence, both included. */
+typedef struct frame_range {
+    uint32_t first, last;
+    bool is_given;
+} frame_range;
+
+/* What convert alone takes. */
+typedef struct convert_options {
+    const char *to, *out;
+    uint32_t env_size, size[2]; /* 0: not given */
+    double exposure;            /* stops; NaN means auto */
+    bool half;
+} convert_options;
+
+/* What inspect alone takes. */
+typedef struct inspect_options {
+    const char *json, *out;
+} inspect_options;
+
 /* What the command line says. A pointer that is NULL means that the option was not given and has no fixed default. */
 typedef struct cli_options {
     const char *env, *layout;
@@ -31,21 +52,31 @@ typedef struct cli_options {
     double rotate, intensity;
     bool flip;
 
+    frame_range frames;
+    uint32_t day_frames;
+    double fps; /* 0: not given */
+    const char *on_missing, *transfer;
+
     const char *mesh, *material, *camera, *ground;
 
     uint32_t spp, aa, seed;
-    const char *strategy, *weighting, *decorrelate, *visibility;
+    const char *strategy, *weighting, *decorrelate, *visibility, *seed_mode;
     double brdf_share;
     bool no_beta;
 
     uint32_t size[2]; /* width, height */
     const char *background, *tonemap, *out, *stats;
+    const char *contact_sheet, *codec;
     double exposure; /* stops; NaN means auto */
-    bool aovs;
+    double quality;  /* of a video; 0: not given */
+    bool aovs, hdr, resume;
 
     uint32_t max_pixels, max_mesh_memory, max_mesh_seconds; /* 0: not given; memory in MiB */
 
+    const char *input; /* of convert and inspect: the SRC that follows the command */
     bench_options bench;
+    convert_options convert;
+    inspect_options inspect;
 
     const char *backend;
     uint32_t threads; /* 0: one per logical core */
@@ -63,14 +94,18 @@ typedef enum option_kind {
     OPTION_NUMBER,   /* double in minimum..maximum */
     OPTION_EXPOSURE, /* double in minimum..maximum, or the word auto: NaN */
     OPTION_SIZE,     /* uint32_t [2], each in minimum..maximum, as WxH */
+    OPTION_RANGE,    /* frame_range, each in minimum..maximum and not falling, as A..B */
 } option_kind;
 
 /* Groups in the order in which the help shows them. */
 typedef enum option_group {
     GROUP_ENVIRONMENT,
+    GROUP_SEQUENCE,
     GROUP_SCENE,
     GROUP_SAMPLING,
     GROUP_PICTURE,
+    GROUP_CONVERT,
+    GROUP_INSPECT,
     GROUP_BENCH,
     GROUP_PROGRAM,
     GROUP_COUNT

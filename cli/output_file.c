@@ -4,6 +4,7 @@
 #include "message.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -42,4 +43,18 @@ int output_file_check(const char *option, const char *path, const char *const *i
         return message_failure("%s cannot be written: no permission to write in %s; give --%s another path", path,
                                directory, option);
     return EXIT_CODE_OK;
+}
+
+FILE *output_file_open(const char *path, char *temporary, size_t size)
+{
+    const char *slash = strrchr(path, '/');
+    int directory_length = slash ? (int)(slash - path) + 1 : 0;
+    int length =
+        snprintf(temporary, size, "%.*s.%s.%ld", directory_length, path, path + directory_length, (long)getpid());
+    if (length < 0 || (size_t)length >= size) {
+        errno = ENAMETOOLONG;
+        return NULL;
+    }
+    int descriptor = open(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    return descriptor < 0 ? NULL : fdopen(descriptor, "w");
 }

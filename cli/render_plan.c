@@ -3,14 +3,15 @@
 
 #include "asset.h"
 #include "message.h"
-#include "output_file.h"
+#include "output_plan.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
-#include <strings.h>
+#include <unistd.h>
 
 static const char SHIPPED_MESH[] = "dragon.ply.gz";
+
+enum { USUAL_DAY_FRAMES = 240 };
 
 static bool is(const char *value, const char *word)
 {
@@ -26,7 +27,9 @@ float render_plan_aspect(const render_plan *plan)
 static int parse_words(render_plan *plan)
 {
     const cli_options *options = plan->options;
-    if (helio_layout_parse(options->layout, &plan->layout) != HELIO_OK ||
+    if (helio_layout_parse(options->layout, &plan->source.layout) != HELIO_OK ||
+        helio_transfer_parse(options->transfer, &plan->source.transfer) != HELIO_OK ||
+        helio_on_missing_parse(options->on_missing, &plan->source.on_missing) != HELIO_OK ||
         helio_strategy_parse(options->strategy, &plan->strategy) != HELIO_OK ||
         helio_weighting_parse(options->weighting, &plan->weighting) != HELIO_OK ||
         helio_ground_parse(options->ground, &plan->ground) != HELIO_OK ||
@@ -59,28 +62,17 @@ static int check_scene(render_plan *plan)
     return check_camera(plan);
 }
 
-static bool has_extension(const char *path, const char *extension)
-{
-    const char *dot = strrchr(path, '.');
-    return dot != NULL && strcasecmp(dot + 1, extension) == 0;
-}
-
-static int check_output(const render_plan *plan)
+static int choose_light(render_plan *plan)
 {
     const cli_options *options = plan->options;
-    const char *percent = strchr(options->out, '%');
-    if (percent != NULL && percent[1 + strspn(percent + 1, "0123456789")] == 'd')
-        return message_usage("--out %s names a sequence, which is not in this version; name one picture", options->out);
-    if (helio_picture_check_path(options->out) != HELIO_OK)
-        return message_usage("--out: %s", helio_last_error());
-    if (options->aovs && !has_extension(options->out, "exr"))
-        return message_usage("--aovs writes layers, which only EXR holds; give --out a name that ends in .exr, not %s",
-                             options->out);
-    if (plan->alpha && has_extension(options->out, "pfm"))
-        message_warning("%s cannot hold the alpha channel of this picture; EXR and PNG can", options->out);
-    if (options->stats != NULL && is(options->stats, options->out))
-        return message_usage("--stats and --out both name %s; give two files", options->out);
-    return EXIT_CODE_OK;
+    bool may_be_sequence = options->out == NULL || plan->sink != SINK_PICTURE;
+    plan->source.has_frames = options->frames.is_given;
+    plan->source.first = options->frames.first;
+    plan->source.last = options->frames.last;
+    plan->source.fps = options->fps;
+    plan->source.frames = options->day_frames;
+    plan->source.max_pixels = options->max_pixels;
+    return light_source_choose(options->env, may_be_sequence, &plan->light);
 }
 
 static int check_program(const cli_options *options)
@@ -110,21 +102,32 @@ static int choose_mesh(render_plan *plan)
 }
 
 /* Options that are fine but change nothing here: people should not look for their effect. */
-static void warn_of_idle_options(const render_plan *plan)
+static void warn_of_idle_sampling(const render_plan *plan)
 {
     const cli_options *options = plan->options;
     const char *strategy = helio_strategy_name(helio_strategy_resolve(plan->strategy));
     bool by_face = strncmp(strategy, "face", 4) == 0, has_brdf = strstr(strategy, "+brdf") != NULL;
-    bool has_exposure = !isnan(options->exposure) || plan->tonemap != HELIO_TONEMAP_CLIP;
     if (options->no_beta && !by_face)
         message_warning("--no-beta changes nothing with --strategy %s", strategy);
     if (options->brdf_share != 0.5 && !has_brdf)
         message_warning("--brdf-share changes nothing with --strategy %s", strategy);
-    if (plan->layout != HELIO_LAYOUT_AUTO && plan->source.path[0] == 0)
-        message_warning("--layout changes nothing with --env %s", plan->source.label);
-    if (has_exposure && !has_extension(options->out, "png"))
-        message_warning("--exposure and --tonemap change nothing in %s: EXR and PFM hold radiance as it is",
-                        options->out);
+}
+
+static void warn_of_idle_source(const render_plan *plan)
+{
+    const cli_options *options = plan->options;
+    helio_source_kind kind = plan->light.kind;
+    bool has_map = kind != HELIO_SOURCE_CONSTANT && kind != HELIO_SOURCE_SKY && kind != HELIO_SOURCE_SKY_DAY;
+    bool is_coded = kind == HELIO_SOURCE_VIDEO || kind == HELIO_SOURCE_DEVICE;
+    const char *source = plan->light.specification;
+    if (plan->source.layout != HELIO_LAYOUT_AUTO && !has_map)
+        message_warning("--layout changes nothing with --env %s", source);
+    if (plan->source.transfer != HELIO_TRANSFER_AUTO && !is_coded)
+        message_warning("--transfer changes nothing with --env %s, which is no video", source);
+    if (options->on_missing[1] != 't' && kind != HELIO_SOURCE_SEQUENCE)
+        message_warning("--on-missing changes nothing with --env %s, which is no sequence of files", source);
+    if (options->day_frames != USUAL_DAY_FRAMES && kind != HELIO_SOURCE_SKY_DAY)
+        message_warning("--day-frames changes nothing with --env %s; it is for sky:day", source);
 }
 
 int render_plan_make(render_plan *plan, const cli_options *options)
@@ -136,17 +139,27 @@ int render_plan_make(render_plan *plan, const cli_options *options)
     if (code == EXIT_CODE_OK)
         code = check_scene(plan);
     if (code == EXIT_CODE_OK)
-        code = check_output(plan);
+        code = output_plan_check(plan);
     if (code == EXIT_CODE_OK)
-        code = environment_source_parse(options->env, &plan->source);
+        code = choose_light(plan);
     if (code == EXIT_CODE_OK)
         code = choose_mesh(plan);
-    const char *const inputs[] = {plan->source.path, plan->mesh, NULL};
-    if (code == EXIT_CODE_OK)
-        code = output_file_check("out", options->out, inputs);
-    if (code == EXIT_CODE_OK && options->stats != NULL)
-        code = output_file_check("stats", options->stats, inputs);
-    if (code == EXIT_CODE_OK)
-        warn_of_idle_options(plan);
     return code;
+}
+
+int render_plan_settle(render_plan *plan, bool is_dynamic)
+{
+    int code = output_plan_settle(plan, is_dynamic);
+    if (code != EXIT_CODE_OK)
+        return code;
+    warn_of_idle_sampling(plan);
+    warn_of_idle_source(plan);
+    output_plan_warn(plan);
+    return EXIT_CODE_OK;
+}
+
+void render_plan_release(const render_plan *plan)
+{
+    if (plan->has_made_folder)
+        rmdir(plan->options->out);
 }

@@ -3,28 +3,40 @@
 #ifndef HELIOSTAT_CLI_RENDER_PLAN_H
 #define HELIOSTAT_CLI_RENDER_PLAN_H
 
-#include "environment_source.h"
+#include "frame_sink.h"
+#include "light_source.h"
 #include "options.h"
 
 #include <heliostat/heliostat.h>
 
 typedef struct render_plan {
     const cli_options *options;
-    environment_source source;
+    light_source light;
+    helio_source_desc source;
     char mesh[4096];
-    helio_layout layout;
-    bool has_material; /* else what the mesh brings */
+    frame_sink_kind sink;
+    bool has_made_folder;     /* that --out names; to be removed if nothing comes into it */
+    char out[SINK_PATH_SIZE]; /* "" until render_plan_settle(), where --out was not given */
+    bool has_material;        /* else what the mesh brings */
     helio_material material;
     helio_ground ground;
     helio_strategy strategy;
     helio_weighting weighting;
     helio_background background;
     helio_tonemap tonemap;
-    bool alpha; /* the background lets alpha below 1 happen */
+    helio_video_write_desc video; /* without exposure and tone map */
+    bool alpha;                   /* the background lets alpha below 1 happen */
 } render_plan;
 
-/* Reads and writes no file. Returns EXIT_CODE_OK, or another exit code after one sentence on stderr. */
+/* Reads and writes no file. The options must outlive the plan. Returns EXIT_CODE_OK, or another exit code after one
+ * sentence on stderr. */
 int render_plan_make(render_plan *plan, const cli_options *options);
+
+/* What can only be told once the source is open: does what comes fit --out? */
+int render_plan_settle(render_plan *plan, bool is_dynamic);
+
+/* Removes the folder that was made, if nothing came into it. */
+void render_plan_release(const render_plan *plan);
 
 /* Width / height. */
 float render_plan_aspect(const render_plan *plan);

@@ -5,6 +5,7 @@
 #include "machine.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 static json_t *frame_object(const stats_frame *frame)
 {
@@ -12,6 +13,7 @@ static json_t *frame_object(const stats_frame *frame)
                             "negative", json_whole(frame->negative), "out_of_gamut", json_whole(frame->out_of_gamut));
     json_t *object = json_object();
     json_object_set_new(object, "index", json_whole(frame->index));
+    json_object_set_new(object, "read_ms", json_number(frame->read_ms));
     json_object_set_new(object, "source_ms", json_number(frame->source_ms));
     json_object_set_new(object, "cube_ms", json_number(frame->cube_ms));
     json_object_set_new(object, "tables_ms", json_number(frame->tables_ms));
@@ -27,20 +29,21 @@ static json_t *frame_object(const stats_frame *frame)
     return object;
 }
 
-static json_t *summary_object(const stats_frame *frames, size_t count, const stats_summary *summary)
+static json_t *summary_object(const stats_list *list, const stats_summary *summary)
 {
     double milliseconds = 0, samples = 0;
-    for (size_t i = 0; i < count; i++) {
-        milliseconds += frames[i].total_ms;
-        samples += (double)frames[i].samples;
+    for (size_t i = 0; i < list->count; i++) {
+        milliseconds += list->frames[i].total_ms;
+        samples += (double)list->frames[i].samples;
     }
     double seconds = fmax(milliseconds, 1e-6) / 1e3;
     char processor[256];
     machine_processor(processor, sizeof processor);
 
     json_t *object = json_object();
-    json_object_set_new(object, "frames", json_whole(count));
-    json_object_set_new(object, "fps", json_number((double)count / seconds));
+    json_object_set_new(object, "frames", json_whole(list->count));
+    json_object_set_new(object, "skipped", json_whole(summary->skipped));
+    json_object_set_new(object, "fps", json_number((double)list->count / seconds));
     json_object_set_new(object, "samples_per_second", json_number(samples / seconds));
     json_object_set_new(object, "strategy", json_string(summary->strategy));
     json_object_set_new(object, "spp", json_whole(summary->spp));
@@ -51,17 +54,39 @@ static json_t *summary_object(const stats_frame *frames, size_t count, const sta
     json_object_set_new(object, "device", json_string(processor));
     json_object_set_new(object, "isa", json_string(summary->isa));
     json_object_set_new(object, "threads", json_whole(summary->threads));
+    if (summary->error != NULL)
+        json_object_set_new(object, "error", json_string(summary->error));
     return object;
 }
 
-int stats_write(const char *path, const stats_frame *frames, size_t count, const stats_summary *summary)
+bool stats_list_add(stats_list *list, const stats_frame *frame)
 {
-    json_t *list = json_array();
-    for (size_t i = 0; i < count; i++)
-        json_array_append_new(list, frame_object(&frames[i]));
+    if (list->count == list->capacity) {
+        size_t capacity = list->capacity > 0 ? list->capacity * 2 : 16;
+        stats_frame *frames = realloc(list->frames, capacity * sizeof frames[0]);
+        if (frames == NULL)
+            return false;
+        list->frames = frames;
+        list->capacity = capacity;
+    }
+    list->frames[list->count++] = *frame;
+    return true;
+}
+
+void stats_list_release(stats_list *list)
+{
+    free(list->frames);
+    *list = (stats_list){0};
+}
+
+int stats_write(const char *path, const stats_list *list, const stats_summary *summary)
+{
+    json_t *frames = json_array();
+    for (size_t i = 0; i < list->count; i++)
+        json_array_append_new(frames, frame_object(&list->frames[i]));
     json_t *object = json_object();
-    json_object_set_new(object, "frames", list);
-    json_object_set_new(object, "summary", summary_object(frames, count, summary));
+    json_object_set_new(object, "frames", frames);
+    json_object_set_new(object, "summary", summary_object(list, summary));
     int code = json_file_write("stats", path, object);
     json_decref(object);
     return code;

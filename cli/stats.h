@@ -3,13 +3,17 @@
 #ifndef HELIOSTAT_CLI_STATS_H
 #define HELIOSTAT_CLI_STATS_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 typedef struct stats_frame {
-    uint32_t index;
+    uint64_t index;
+    double read_ms; /* reading and decoding, which goes on while earlier frames are rendered */
+    /* What the frame took of the time of all: source_ms and write_ms are waits, for reading and writing, which go on
+     * beside the rendering of sequences. */
     double source_ms, cube_ms, tables_ms, pools_ms, primary_ms, shade_ms, write_ms;
-    double total_ms; /* of the frame: source to written picture, without the scene, which is loaded once */
+    double total_ms; /* source to written picture, without the scene, which is loaded once */
     uint64_t samples, samples_useful;
     uint64_t nan, infinite, negative; /* pixels of the source as stored */
     uint64_t out_of_gamut;            /* pixels that became negative when their colours were converted */
@@ -19,11 +23,23 @@ typedef struct stats_frame {
 typedef struct stats_summary {
     const char *strategy, *isa;
     uint32_t spp, width, height, threads, passes;
-    double ev; /* stops that a PNG of the last frame gets */
+    double ev;         /* stops that PNG and video get */
+    uint64_t skipped;  /* frames that an earlier run had made */
+    const char *error; /* why the sequence ended early; NULL: it did not */
 } stats_summary;
+
+/* Grows by one entry for each frame. Start from {0}. */
+typedef struct stats_list {
+    stats_frame *frames;
+    size_t count, capacity;
+} stats_list;
+
+/* False where there is no memory. */
+bool stats_list_add(stats_list *list, const stats_frame *frame);
+void stats_list_release(stats_list *list);
 
 /* Writes under a temporary name and renames. fps and samples_per_second are by the sum of total_ms. Returns
  * EXIT_CODE_OK, or EXIT_CODE_FAILED after one sentence on stderr. */
-int stats_write(const char *path, const stats_frame *frames, size_t count, const stats_summary *summary);
+int stats_write(const char *path, const stats_list *list, const stats_summary *summary);
 
 #endif

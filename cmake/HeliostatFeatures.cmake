@@ -61,3 +61,22 @@ if(HELIO_WITH_EMBREE)
     list(APPEND FEATURE_DEFINITIONS HELIO_WITH_EMBREE=1 HELIO_EMBREE_MAJOR=${EMBREE_MAJOR})
     list(APPEND FEATURE_LIBRARIES embree)
 endif()
+
+if(HELIO_WITH_FFMPEG)
+    find_package(PkgConfig REQUIRED)
+    pkg_check_modules(FFMPEG QUIET IMPORTED_TARGET libavformat libavcodec libavutil)
+    pkg_check_modules(AVDEVICE QUIET libavdevice) # its header alone, see video_device.h
+    if(NOT FFMPEG_FOUND OR NOT AVDEVICE_FOUND)
+        message(FATAL_ERROR "FFmpeg was not found: install libavformat-dev, libavcodec-dev and libavdevice-dev, or build "
+                            "without it by -DHELIO_WITH_FFMPEG=OFF.")
+    endif()
+    list(APPEND SOURCES src/image/video_colour.c src/image/video_convert.c src/image/video_device.c src/image/video_encoder.c
+         src/image/video_input.c src/image/video_log.c src/image/video_output.c src/image/video_pixels.c
+         src/image/video_reader.c src/image/video_samples.c src/image/video_writer.c)
+    set_source_files_properties(src/image/video_convert.c src/image/video_pixels.c src/image/video_samples.c
+                                PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:Release>:-O3>") # loops over pixels
+    list(APPEND FEATURE_DEFINITIONS HELIO_WITH_FFMPEG=1)
+    list(APPEND FEATURE_LIBRARIES PkgConfig::FFMPEG ${CMAKE_DL_LIBS})
+else()
+    list(APPEND SOURCES src/image/video_absent.c)
+endif()

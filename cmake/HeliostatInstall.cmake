@@ -1,11 +1,14 @@
-# What is installed: headers, library, program, manual page, the environment map with its licence, and what CMake and
-# pkg-config need to find the library. Never the dragon: its terms are not ours to pass on in a package.
+# What is installed: headers, library, program, manual page, the environment map and the sky tables with their licences,
+# and what CMake and pkg-config need to find the library. Never the dragon: its terms are not ours to pass on in a
+# package.
 
 include(CMakePackageConfigHelpers)
 
 install(TARGETS heliostat EXPORT heliostatTargets)
 install(DIRECTORY include/heliostat TYPE INCLUDE FILES_MATCHING PATTERN "*.h")
 install(FILES assets/sunrise.hdr assets/LICENSE-CC0.txt DESTINATION ${CMAKE_INSTALL_DATADIR}/heliostat)
+# The tables are in the library; their licence wants to be passed on with it.
+install(DIRECTORY assets/sky DESTINATION ${CMAKE_INSTALL_DATADIR}/heliostat)
 install(FILES LICENSE TYPE DOC)
 if(TARGET heliostat_program)
     install(TARGETS heliostat_program)
@@ -37,6 +40,12 @@ if(NOT BUILD_SHARED_LIBS)
     if(HELIO_WITH_ASSIMP)
         string(APPEND CONFIG_PACKAGES "find_dependency(assimp CONFIG)\nfind_dependency(ZLIB)\n")
         list(APPEND PC_REQUIRES assimp zlib)
+    endif()
+    if(HELIO_WITH_FFMPEG)
+        string(APPEND CONFIG_PACKAGES "find_dependency(PkgConfig)\n"
+               "pkg_check_modules(FFMPEG REQUIRED QUIET IMPORTED_TARGET "
+               "libavformat libavcodec libavutil)\n")
+        list(APPEND PC_REQUIRES libavformat libavcodec libavutil)
     endif()
     if(HELIO_WITH_EMBREE)
         string(APPEND CONFIG_PACKAGES "find_dependency(embree ${EMBREE_MAJOR} CONFIG)\n")

@@ -11,10 +11,26 @@ set(PROGRAM_SOURCES
     cli/asset.c cli/bench_camera.c cli/bench_cube.c cli/bench_curve.c cli/bench_estimate.c cli/bench_flops.c
     cli/bench_frame.c cli/bench_json.c cli/bench_light.c cli/bench_machine.c cli/bench_memcpy.c cli/bench_mesh.c
     cli/bench_peak.c cli/bench_plan.c cli/bench_pools.c cli/bench_rays.c cli/bench_result.c cli/bench_run.c
-    cli/bench_scene.c cli/bench_series.c cli/bench_table.c cli/bench_team.c cli/command_bench.c cli/command_info.c
-    cli/command_render.c cli/environment_source.c cli/help.c cli/help_texts.c cli/interrupt.c cli/json_file.c cli/list.c
+    cli/bench_scene.c cli/bench_series.c cli/bench_table.c cli/bench_team.c cli/command_bench.c cli/command_convert.c cli/command_info.c
+    cli/command_inspect.c cli/convert_plan.c cli/face.c cli/input_source.c cli/inspect_json.c cli/inspect_judge.c
+    cli/inspect_measure.c cli/inspect_spot.c cli/inspect_text.c cli/map_converter.c cli/map_shape.c cli/map_turn.c
+    cli/command_render.c cli/contact_sheet.c cli/day_exposure.c cli/finished_frame.c cli/frame_sink.c cli/frame_warnings.c cli/light_source.c
+    cli/numbered_path.c cli/output_plan.c cli/render_job.c cli/render_sequence.c cli/sequence_report.c cli/sheet_labels.c
+    cli/help.c cli/help_texts.c cli/interrupt.c cli/json_file.c cli/list.c
     cli/machine.c cli/main.c cli/manual.c cli/message.c cli/number.c cli/option_table.c cli/options.c cli/output_file.c
     cli/progress.c cli/render_plan.c cli/stats.c cli/suggestion.c)
+
+if(HELIO_WITH_CAIRO)
+    pkg_check_modules(CAIRO QUIET IMPORTED_TARGET cairo)
+    if(NOT CAIRO_FOUND)
+        message(FATAL_ERROR "cairo was not found: install libcairo2-dev, or build without it by -DHELIO_WITH_CAIRO=OFF.")
+    endif()
+    list(APPEND PROGRAM_SOURCES cli/false_colour.c cli/inspect_chart.c cli/inspect_drawing.c cli/inspect_panel.c
+         cli/inspect_picture.c)
+    list(APPEND FEATURE_DEFINITIONS HELIO_WITH_CAIRO=1)
+else()
+    list(APPEND PROGRAM_SOURCES cli/inspect_no_picture.c)
+endif()
 
 # The arithmetic peak that bench compares with, for each instruction set as the kernels.
 set(PEAK_OBJECTS "")
@@ -35,3 +51,6 @@ target_compile_definitions(heliostat_program PRIVATE
     HELIOSTAT_ASSET_DIR_SOURCE="${CMAKE_CURRENT_SOURCE_DIR}/assets"
     HELIOSTAT_ASSET_DIR_INSTALL="${CMAKE_INSTALL_FULL_DATADIR}/heliostat")
 target_link_libraries(heliostat_program PRIVATE heliostat helio_flags PkgConfig::JANSSON Threads::Threads m)
+if(HELIO_WITH_CAIRO)
+    target_link_libraries(heliostat_program PRIVATE PkgConfig::CAIRO)
+endif()

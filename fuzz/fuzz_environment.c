@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Maps of any shape, layout and content on their way to samples: layout, cube, tables, pools. */
+ * Maps of any shape, layout, pixel format and content on their way to samples: layout, cube, tables, pools; and back.
+ */
 #include "fuzz.h"
 
 #include <heliostat/environment.h>
@@ -16,12 +17,14 @@ static void take_shape(fuzz_bytes *bytes, uint32_t *width, uint32_t *height)
 {
     uint8_t kind = fuzz_take_byte(bytes);
     uint32_t edge = fuzz_take_whole(bytes, 1, MAX_EDGE / 6);
-    switch (kind % 6) {
+    switch (kind % 8) {
     case 0: *width = 2 * edge, *height = edge; return;
     case 1: *width = 6 * edge, *height = edge; return;
     case 2: *width = edge, *height = 6 * edge; return;
     case 3: *width = *height = edge; return;
-    case 4:
+    case 4: *width = 3 * edge, *height = 4 * edge; return;
+    case 5: *width = 4 * edge, *height = 3 * edge; return;
+    case 6:
         *width = fuzz_take_whole(bytes, 0, MAX_EDGE);
         *height = fuzz_take_whole(bytes, 0, MAX_EDGE);
         return;
@@ -81,41 +84,83 @@ static void draw_samples(helio_environment *environment, fuzz_bytes *bytes)
     helio_tables_destroy(tables);
 }
 
+static void update(helio_environment *environment, fuzz_bytes *bytes, uint32_t width, uint32_t height)
+{
+    static const size_t sizes[] = {12, 16, 6, 8}; /* of a pixel in each format */
+    uint8_t choice = fuzz_take_byte(bytes);
+    helio_pixel_format format = (helio_pixel_format)(choice % 4);
+    size_t pixels = (size_t)width * height, row_bytes = width * sizes[format];
+    unsigned char *memory = malloc(pixels * sizes[format]);
+    FUZZ_EXPECT(memory != NULL);
+    fuzz_take(bytes, memory, pixels * sizes[format]);
+    helio_pixels map = {.data = memory, .format = format};
+    if (choice & 4) { /* from below */
+        map.data = memory + row_bytes * (height - 1);
+        map.row_bytes = -(ptrdiff_t)row_bytes;
+    }
+    helio_environment_info info;
+    FUZZ_EXPECT(helio_environment_update_pixels(environment, &map, &info) == HELIO_OK);
+    check_cube(environment, &info, pixels);
+    free(memory);
+}
+
+static void unfold(const helio_environment *environment, helio_layout layout)
+{
+    uint32_t width, height;
+    FUZZ_EXPECT(helio_layout_shape(layout, helio_environment_cube_size(environment), &width, &height) == HELIO_OK);
+    size_t floats = 3 * (size_t)width * height;
+    float *rgb = malloc(floats * sizeof *rgb);
+    FUZZ_EXPECT(rgb != NULL);
+    FUZZ_EXPECT(helio_environment_unfold(environment, layout, width, height, rgb) == HELIO_OK);
+    for (size_t i = 0; i < floats; i++)
+        FUZZ_EXPECT(isfinite(rgb[i]) && rgb[i] >= 0.0f);
+    free(rgb);
+}
+
+/* Makes an environment, or sees why not. */
+static helio_environment *make_environment(const helio_environment_desc *desc, bool should_be)
+{
+    helio_environment *environment = (helio_environment *)(uintptr_t)desc;
+    helio_status status = helio_environment_create(fuzz_context(), desc, &environment);
+    FUZZ_EXPECT((status == HELIO_OK) == should_be);
+    if (status != HELIO_OK) {
+        FUZZ_EXPECT(environment == NULL);
+        fuzz_expect_sentence(true);
+    }
+    return environment;
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     fuzz_bytes bytes = {data, size};
-    helio_environment_desc desc = {.layout = (helio_layout)(fuzz_take_byte(&bytes) % 8 - 1)};
+    uint8_t choice = fuzz_take_byte(&bytes);
+    helio_environment_desc desc = {.layout = (helio_layout)(choice % 14 - 1)};
     desc.cube_size = fuzz_take_whole(&bytes, 1, MAX_CUBE);
     take_shape(&bytes, &desc.width, &desc.height);
 
     helio_layout layout = HELIO_LAYOUT_AUTO;
-    helio_status guessed = helio_layout_guess(desc.width, desc.height, desc.layout, &layout);
-    if (guessed == HELIO_OK)
+    bool is_layout = helio_layout_guess(desc.width, desc.height, desc.layout, &layout) == HELIO_OK;
+    bool no_map = desc.width == 0 && desc.height == 0;
+    if (is_layout)
         FUZZ_EXPECT(layout != HELIO_LAYOUT_AUTO);
     else
         fuzz_expect_sentence(true);
-    if (guessed == HELIO_OK && (uint64_t)desc.width * desc.height > MAX_MAP)
+    if (is_layout && (uint64_t)desc.width * desc.height > MAX_MAP)
         return 0; /* fine, but too slow here */
 
-    helio_environment *environment = (helio_environment *)&desc;
-    helio_status status = helio_environment_create(fuzz_context(), &desc, &environment);
-    FUZZ_EXPECT((status == HELIO_OK) == (guessed == HELIO_OK));
-    if (status != HELIO_OK) {
-        FUZZ_EXPECT(environment == NULL);
-        fuzz_expect_sentence(true);
-        FUZZ_EXPECT(fuzz_live_blocks() == 0);
-        return 0;
+    /* At once, or made without a map and given a shape afterwards. */
+    bool late = choice >= 128;
+    helio_environment_desc first = late ? (helio_environment_desc){.cube_size = desc.cube_size} : desc;
+    helio_environment *environment = make_environment(&first, late || no_map || is_layout);
+    if (late)
+        FUZZ_EXPECT((helio_environment_reshape(environment, desc.width, desc.height, desc.layout) == HELIO_OK) ==
+                    is_layout);
+    if (is_layout) {
+        update(environment, &bytes, desc.width, desc.height);
+        look_around(environment);
+        draw_samples(environment, &bytes);
+        unfold(environment, (helio_layout)(1 + fuzz_take_byte(&bytes) % HELIO_LAYOUT_MIRRORBALL));
     }
-    size_t floats = 3 * (size_t)desc.width * desc.height;
-    float *rgb = malloc(floats * sizeof *rgb);
-    FUZZ_EXPECT(rgb != NULL);
-    fuzz_take(&bytes, rgb, floats * sizeof *rgb);
-    helio_environment_info info;
-    FUZZ_EXPECT(helio_environment_update(environment, rgb, &info) == HELIO_OK);
-    check_cube(environment, &info, floats / 3);
-    look_around(environment);
-    draw_samples(environment, &bytes);
-    free(rgb);
     helio_environment_destroy(environment);
     FUZZ_EXPECT(fuzz_live_blocks() == 0);
     return 0;

@@ -35,6 +35,15 @@ static void check_range(const cli_option *option, double value)
     FUZZ_EXPECT(is_default || (value >= option->minimum && value <= option->maximum));
 }
 
+static void check_frames(const cli_option *option, const frame_range *range)
+{
+    if (!range->is_given)
+        return;
+    check_range(option, range->first);
+    check_range(option, range->last);
+    FUZZ_EXPECT(range->first <= range->last);
+}
+
 /* The member that belongs to this option holds what its kind promises. */
 static void check_option(const cli_option *option, const cli_options *options)
 {
@@ -59,6 +68,7 @@ static void check_option(const cli_option *option, const cli_options *options)
         check_range(option, *(const double *)member);
         return;
     case OPTION_NUMBER: check_range(option, *(const double *)member); return;
+    case OPTION_RANGE: check_frames(option, member); return;
     case OPTION_SIZE:
         check_range(option, ((const uint32_t *)member)[0]);
         check_range(option, ((const uint32_t *)member)[1]);

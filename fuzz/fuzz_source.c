@@ -2,10 +2,8 @@
  *
  * What may follow --env. Nothing is read. */
 #include "fuzz.h"
-#include "messages.h"
 
-#include "environment_source.h"
-#include "message.h"
+#include <heliostat/source.h>
 
 #include <stdlib.h>
 #include <string.h>
@@ -13,18 +11,10 @@
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     char *text = fuzz_text(data, size);
-    environment_source *source = malloc(sizeof *source);
-    FUZZ_EXPECT(source != NULL);
-    messages_take();
-    int code = environment_source_parse(text, source);
-    size_t sentences = messages_take();
-    FUZZ_EXPECT(code == EXIT_CODE_OK ? sentences == 0 : sentences == 1);
-    if (code == EXIT_CODE_OK) {
-        FUZZ_EXPECT(source->path[0] == 0 || strcmp(source->path, text) == 0);
-        for (int c = 0; c < 3; c++)
-            FUZZ_EXPECT(source->constant[c] >= 0.0f && source->constant[c] <= 1e12f);
-    }
-    free(source);
+    helio_source_kind kind = HELIO_SOURCE_FILE;
+    helio_status status = helio_source_check(text, &kind);
+    FUZZ_EXPECT(status == HELIO_OK || (status == HELIO_ERR_ARGUMENT && helio_last_error()[0] != 0));
+    FUZZ_EXPECT(kind >= HELIO_SOURCE_FILE && kind <= HELIO_SOURCE_SKY_DAY);
     free(text);
     return 0;
 }

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Texts of materials and cameras, the names of layouts, strategies and so on, and numbers: every parser gets every
- * input. */
+ * Texts of materials, skies and cameras, the names of layouts, strategies and so on, and numbers: every parser gets
+ * every input. */
 #include "fuzz.h"
 
+#include "env/sky_specification.h"
 #include "number.h"
 
 #include <heliostat/sampling.h>
@@ -20,6 +21,23 @@ static void try_material(const char *text)
         FUZZ_EXPECT(helio_material_check(&material) == HELIO_OK);
     else
         fuzz_expect_sentence(false);
+}
+
+/* A sky that was understood can be made. */
+static void try_sky(const char *text)
+{
+    sky_specification s;
+    if (sky_specification_parse(text, &s) != HELIO_OK) {
+        fuzz_expect_sentence(false);
+        return;
+    }
+    FUZZ_EXPECT(fabs(s.desc.sun.azimuth) <= 360.0 && fabs(s.desc.sun.elevation) <= 90.0);
+    FUZZ_EXPECT(s.desc.turbidity >= 1.0f && s.desc.turbidity <= 10.0f);
+    FUZZ_EXPECT(s.desc.albedo >= 0.0f && s.desc.albedo <= 1.0f);
+    double sunrise = 0, sunset = 1;
+    if (s.is_day && helio_sun_day(&s.place, &sunrise, &sunset) != HELIO_OK)
+        fuzz_expect_sentence(false);
+    FUZZ_EXPECT(sunrise < sunset);
 }
 
 static const helio_mesh *tetrahedron(void)
@@ -87,6 +105,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     size_t blocks = fuzz_live_blocks();
     FUZZ_EXPECT(mesh != NULL);
     try_material(text);
+    try_sky(text);
     try_camera(text, aspects[size % 4]);
     try_names(text);
     try_numbers(text);

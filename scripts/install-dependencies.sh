@@ -25,7 +25,11 @@ build libopenexr-dev - OpenEXR pictures
 build libpng-dev - PNG pictures
 build libjpeg-dev - JPEG pictures
 build zlib1g-dev - gzipped meshes
+build libavformat-dev - video files
+build libavcodec-dev - video
+build libavdevice-dev - cameras and test patterns
 build libjansson-dev - statistics in JSON
+build libcairo2-dev - figures
 test libcmocka-dev - tests
 test g++ g++ testing the headers in C++
 ci clang clang a second compiler

@@ -34,6 +34,8 @@ static bool same_bytes(const char *path, const char *other_path)
     "--material=file --camera=auto --ground=plane --spp=16 --aa=2 --strategy=face+brdf --brdf-share=0.25 "             \
     "--weighting=paper --no-beta --decorrelate=none --visibility=none --seed=7 --size=32x24 --out=all.exr --aovs "     \
     "--background=env --exposure=-1.5 --tonemap=clip --stats=all.json --max-pixels=1 "                                 \
+    "--frames=0..0 --day-frames=9 --on-missing=hold --transfer=pq --fps=30 --codec=ffv1 --quality=0.5 --hdr "          \
+    "--contact-sheet=sheet.png --resume --seed-mode=frame "                                                            \
     "--max-mesh-memory=300 --max-mesh-seconds=60 --backend=cpu --threads=2 --verbose"
 
 /* Is --name there as a word of its own? */
@@ -223,7 +225,7 @@ static const struct {
     {"render --exposure bright", "auto"},
     {"render --exposure inf", "inf"},
     {"render --strategy faces", "face+brdf"},
-    {"render --layout cross-v", "latlong"},
+    {"render --layout cross", "latlong"},
     {"render --weighting equal", "solid-angle or paper"},
     {"render --tonemap filmic", "clip or reinhard"},
     {"render --background black", "env or none"},
@@ -238,19 +240,28 @@ static const struct {
     {"render --material wood", "wood"},
     {"render --camera orbit:azimuth=x", "--camera"},
     {"render --camera lookat:fov=20", "eye"},
-    {"render --env sky:day", "sky"},
-    {"render --env lavfi:testsrc", "lavfi"},
-    {"render --env v4l2:/dev/video0", "camera"},
-    {"render --env clip.mp4", "video"},
-    {"render --env frame_%04d.exr", "sequence"},
-    {"render --env *.hdr", "sequence"},
+    {"render --env sky:noon", "sky:noon"},
+    {"render --env sky:lat=91", "91"},
+    {"render --env sky:day --out a.png", "many frames"},
+    {"render --env frame_%n.exr", "frame_%n.exr"},
+    {"render --day-frames 0", "1 to 1000000"},
+    {"render --on-missing wait", "skip, hold or stop"},
+    {"render --transfer gamma", "sdr"},
+    {"render --fps 0", "--fps"},
+    {"render --codec mpeg2", "hevc"},
+    {"render --quality 2", "0.01 to 1"},
+    {"render --seed-mode random", "fixed or frame"},
+    {"render --frames 3", "first..last"},
+    {"render --contact-sheet a.exr", ".png"},
+    {"render --contact-sheet a.png --out a.png", "a.png"},
     {"render --env constant:1,2", "constant:1,2"},
-    {"render --env constant:1,2,3,4", "three numbers"},
+    {"render --env constant:1,2,3,4", "3 numbers"},
     {"render --env constant:1,2,-3", "-3"},
     {"render --env constant:1,2,inf", "inf"},
     {"render --out picture.tiff", "picture.tiff"},
     {"render --out picture", "picture"},
-    {"render --out frame_%04d.png", "sequence"},
+    {"render --out frame_%04d_%d.png", "one number"},
+    {"render --out clip.avi", "clip.avi"},
     {"render --aovs", ".exr"},
     {"render --aovs --out picture.pfm", ".exr"},
     {"render --out a.png --stats a.png", "a.png"},
@@ -329,7 +340,7 @@ static void test_missing_assets_are_explained(void **state)
     (void)state;
     skip_without(NEEDS_PNG);
     setenv("HELIOSTAT_ASSETS", ".", 1);
-    int without_map = run_program("render --mesh tetrahedron.obj");
+    int without_map = run_program("render --mesh tetrahedron.obj --out a.png");
     bool says_env = strstr(program_err, "--env") != NULL;
     int without_mesh = run_program("render --env constant:1,1,1");
     bool says_mesh = strstr(program_err, "--mesh") != NULL;

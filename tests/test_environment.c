@@ -1426,7 +1426,6 @@ static void bad_descs_are_refused(void **state)
 {
     (void)state;
     size_t live = shared_memory.live;
-    expect_desc_refused((helio_environment_desc){0}, "0");
     expect_desc_refused((helio_environment_desc){.width = 2}, "2");
     expect_desc_refused((helio_environment_desc){.height = 2}, "2");
     expect_desc_refused((helio_environment_desc){.width = 65537, .height = 2}, "65537");
@@ -1453,7 +1452,7 @@ static void bad_descs_are_refused(void **state)
 static void a_single_pixel_is_constant_in_every_layout(void **state)
 {
     (void)state;
-    for (int layout = HELIO_LAYOUT_AUTO; layout <= HELIO_LAYOUT_STRIP_OPENEXR; layout++)
+    for (int layout = HELIO_LAYOUT_AUTO; layout <= HELIO_LAYOUT_MIRRORBALL; layout++)
         expect_constant((helio_layout)layout, 1, 1, 3);
 }
 

@@ -136,7 +136,7 @@ static void maps_that_are_no_files_are_refused(void **state)
     assert_int_equal(mkfifo("pipe.hdr", 0600), 0);
     is_refused("pipe.hdr", SOUND_MESH, "pipe.hdr is not a file");
     is_refused("/dev/zero", SOUND_MESH, "/dev/zero is not a file");
-    is_refused(".", SOUND_MESH, "not a file");
+    is_refused(".", SOUND_MESH, "lacks one of the six faces");
 }
 
 static void meshes_with_bad_numbers_are_refused(void **state)

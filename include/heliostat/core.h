@@ -79,13 +79,15 @@ typedef struct helio_context_desc {
     /* Receives one line without a newline; may be called from any thread, one call at a time. Default: stderr. */
     void (*log)(void *user, helio_log_level level, const char *message);
 
-    /* Give both or neither. alignment is a power of two; release gets what allocate returned, never NULL.
-     * Default: the C library. */
+    /* Give both or neither. alignment is a power of two; release gets what allocate returned, never NULL. May be called
+     * by several threads at once: by the caller's, and by those with which sources read ahead. Default: the C library.
+     */
     void *(*allocate)(void *user, size_t bytes, size_t alignment);
     void (*release)(void *user, void *memory);
 
     /* Runs body(data, 0) ... body(data, count - 1), returns when all are done. An engine gives its own job system
-     * here; results do not depend on it. Default: a small pool of pthreads. Calls do not nest. */
+     * here; results do not depend on it. Default: a small pool of pthreads. Calls do not nest, and come from the
+     * caller's threads only. */
     void (*parallel_for)(void *user, size_t count, helio_loop_body body, void *data);
 
     void *user; /* handed to the four functions above */

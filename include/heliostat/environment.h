@@ -23,9 +23,25 @@ typedef struct helio_environment helio_environment;
 
 typedef struct helio_environment_desc {
     uint32_t cube_size;     /* R, texels along a face's edge, 1..4096; default 512 */
-    uint32_t width, height; /* pixels of the maps to come; required, 1..65536 each, at most 2^28 in all */
+    uint32_t width, height; /* pixels of the maps to come, 1..65536 each, at most 2^28 in all; both 0: no map is
+                               expected, the cube is black until helio_sky_update() or helio_environment_reshape() */
     helio_layout layout;    /* their layout; default: guessed from the shape, see helio_layout_guess() */
 } helio_environment_desc;
+
+/* How the numbers of a map lie in memory. Channels are interleaved; alpha is not looked at. */
+typedef enum helio_pixel_format {
+    HELIO_PIXELS_RGB_FLOAT = 0,
+    HELIO_PIXELS_RGBA_FLOAT,
+    HELIO_PIXELS_RGB_HALF, /* IEEE binary16 */
+    HELIO_PIXELS_RGBA_HALF,
+} helio_pixel_format;
+
+/* A map in the caller's memory, for instance a mapped buffer or a decoder's frame. */
+typedef struct helio_pixels {
+    const void *data; /* [height] rows of [width][channels]; aligned to its numbers */
+    helio_pixel_format format;
+    ptrdiff_t row_bytes; /* from one row to the next, negative for maps stored from below; default: without padding */
+} helio_pixels;
 
 /* What one update saw. A NaN or infinite channel makes its pixel 0, a negative channel becomes 0. Channels beyond 1e30
  * in magnitude count as infinite: no light is that bright, and sums of such numbers would not fit a float. */
@@ -47,6 +63,24 @@ HELIO_API void helio_environment_destroy(helio_environment *environment);
  * shrinks: a sun of one pixel keeps its flux. info may be NULL. */
 HELIO_API helio_status helio_environment_update(helio_environment *environment, const float *rgb,
                                                 helio_environment_info *info);
+
+/* The same from pixels of other formats and strides, read where they lie: no copy is made but the cube. Half numbers
+ * give the same bits as the floats that they stand for. */
+HELIO_API helio_status helio_environment_update_pixels(helio_environment *environment, const helio_pixels *pixels,
+                                                       helio_environment_info *info);
+
+/* From now on maps of another shape or layout come; the cube stays as it is until the next update. Takes memory, and
+ * leaves the environment as it was if there is none. Does nothing where shape and layout stay. Use it alone, as an
+ * update. */
+HELIO_API helio_status helio_environment_reshape(helio_environment *environment, uint32_t width, uint32_t height,
+                                                 helio_layout layout);
+
+/* The way back: writes the cube, before orientation, as a map. Each pixel is the average of the texels over the pixel's
+ * solid angle, so light is neither lost nor gained; pixels outside of a disc or of a cross are 0.
+ * rgb: [height][width][3]; the shape must fit the layout (helio_layout_shape()). Takes memory for the time of the call.
+ */
+HELIO_API helio_status helio_environment_unfold(const helio_environment *environment, helio_layout layout,
+                                                uint32_t width, uint32_t height, float *rgb);
 
 /* How the map is turned and scaled when it is looked up; rebuilds nothing. */
 typedef struct helio_orientation {

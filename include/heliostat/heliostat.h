@@ -12,5 +12,8 @@
 #include <heliostat/renderer.h>
 #include <heliostat/sampling.h>
 #include <heliostat/scene.h>
+#include <heliostat/sky.h>
+#include <heliostat/source.h>
+#include <heliostat/video.h>
 
 #endif

@@ -96,6 +96,16 @@ static bool read_number(const char *text, size_t length, float *number)
     return *end == 0 && isfinite(*number);
 }
 
+static helio_status add_text(const reader *r, const specification_field *field, const char *text, int length)
+{
+    if (length == 0 || length >= SPECIFICATION_TEXT_SIZE)
+        return fail(HELIO_ERR_ARGUMENT, "%s \"%.200s\": %s is \"%.*s\"; use 1 to %d characters", r->what, r->text,
+                    field->key, length > 60 ? 60 : length, text, SPECIFICATION_TEXT_SIZE - 1);
+    memcpy(field->text, text, (size_t)length);
+    field->text[length] = 0;
+    return HELIO_OK;
+}
+
 static helio_status add_number(const reader *r, const specification_field *field, uint32_t index, const char *text,
                                int length)
 {
@@ -103,6 +113,8 @@ static helio_status add_number(const reader *r, const specification_field *field
     if (index >= field->count)
         return fail(HELIO_ERR_ARGUMENT, "%s \"%.200s\": %s has more than %u number%s", r->what, r->text, key,
                     field->count, field->count == 1 ? "" : "s");
+    if (field->text != NULL)
+        return add_text(r, field, text, length);
     float number;
     if (!read_number(text, (size_t)length, &number))
         return fail(HELIO_ERR_ARGUMENT, "%s \"%.200s\": %s is \"%.*s\"; use a number from %g to %g", r->what, r->text,

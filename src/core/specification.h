@@ -5,6 +5,8 @@
 
 #include <heliostat/core.h>
 
+enum { SPECIFICATION_TEXT_SIZE = 32 };
+
 /* One key that a specification may have. */
 typedef struct specification_field {
     const char *key;       /* "" for the numbers that follow the colon without a key, as in "diffuse:0.8" */
@@ -13,6 +15,8 @@ typedef struct specification_field {
     float least, greatest; /* range of each number */
     float *values;         /* [count], written only if the key is given */
     bool given;            /* was it? */
+    char *text;            /* [SPECIFICATION_TEXT_SIZE] where the key takes a text instead of a number (count 1), such
+                              as a date: written here. NULL for numbers */
 } specification_field;
 
 /* Is the part of the text before the colon, or the whole text, this name? */

@@ -10,17 +10,22 @@
 
 typedef struct resampler resampler;
 
-struct helio_environment {
-    helio_context *context;
-    uint32_t size; /* R */
-    uint32_t width, height;
+/* What depends on the shape of the maps to come. */
+typedef struct environment_map {
+    uint32_t width, height; /* 0: no map is expected, and there is nothing else here */
     helio_layout layout;
-    uint64_t frame;
-    float *cube;        /* [6][R][R][3] */
-    float *solid_angle; /* [R][R], sr, the same for all faces */
     resampler *resampler;
     helio_bad_pixels *row_faults; /* [height] */
     uint8_t *row_readings;        /* [height], see resampler_run() */
+} environment_map;
+
+struct helio_environment {
+    helio_context *context;
+    uint32_t size; /* R */
+    uint64_t frame;
+    float *cube;        /* [6][R][R][3] */
+    float *solid_angle; /* [R][R], sr, the same for all faces */
+    environment_map map;
     vec3 map_axes[3]; /* world axes X Y Z as seen in the map's space: rows of an orthogonal matrix's transpose */
     float intensity;
 };
@@ -44,5 +49,13 @@ static inline const float *environment_texel(const helio_environment *environmen
     size_t size = environment->size;
     return environment->cube + ((face * size + row) * size + column) * 3;
 }
+
+/* Checks the shape of a map and guesses its layout where it is AUTO; FACES becomes STRIP, which is the same in memory.
+ */
+helio_status environment_resolve_map(uint32_t width, uint32_t height, helio_layout *layout);
+
+/* Call when the cube of a new frame is there, whoever made it. bad: of the map, zero where there is none. info may be
+ * NULL. */
+void environment_finish_frame(helio_environment *environment, helio_bad_pixels bad, helio_environment_info *info);
 
 #endif

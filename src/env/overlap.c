@@ -6,17 +6,30 @@
 
 /* ---- the writer ---- */
 
+/* Whether a run of one row goes on where the latest one of the same texel ends. */
+static bool continues(const overlap_writer *writer, const overlap_run *run)
+{
+    const overlap_run *latest = &writer->latest;
+    unsigned rows = latest->more_rows + 1u;
+    return writer->run_count > writer->texel_run && run->column == latest->column && run->count == latest->count &&
+           run->quarter == latest->quarter && run->row == latest->row + rows &&
+           (rows + 1) * run->count <= OVERLAP_RUN_LIMIT;
+}
+
 static void write_run(overlap_writer *writer, overlap_run run, const double *areas)
 {
+    if (continues(writer, &run))
+        writer->latest.more_rows = (writer->latest.more_rows + 1) & 31;
+    else
+        writer->latest = run, writer->run_count++;
     if (writer->runs != NULL) {
-        writer->runs[writer->run_count] = run;
+        writer->runs[writer->run_count - 1] = writer->latest;
         for (uint32_t i = 0; i < run.count; i++) {
             float area = (float)areas[i];
             writer->weights[writer->weight_count + i] = area;
             writer->area += (double)area;
         }
     }
-    writer->run_count++;
     writer->weight_count += run.count;
 }
 
@@ -43,6 +56,7 @@ void overlap_end_texel(overlap_writer *writer)
             writer->weights[i] = (float)((double)writer->weights[i] / writer->area);
         writer->runs[writer->run_count - 1].last = true;
     }
+    writer->texel_run = writer->run_count;
     writer->texel_weight = writer->weight_count;
     writer->area = 0;
 }
@@ -66,15 +80,17 @@ static helio_status create_tiles(helio_context *context, uint32_t size, overlap_
         return HELIO_ERR_MEMORY;
     for (uint32_t i = 0; i < list->tile_count; i++) {
         uint32_t row = i / columns * step, column = i % columns * step;
-        list->tiles[i] = (overlap_tile){
-            row, row + step < half ? row + step : half, column, column + step < half ? column + step : half, 0, 0};
+        list->tiles[i] = (overlap_tile){.first_row = row,
+                                        .end_row = row + step < half ? row + step : half,
+                                        .first_column = column,
+                                        .end_column = column + step < half ? column + step : half};
     }
     return HELIO_OK;
 }
 
 typedef struct list_filling {
-    const overlap_geometry *geometry;
     overlap_generator generate;
+    const void *geometry;
     overlap_list *list;
 } list_filling;
 
@@ -97,16 +113,22 @@ static void count_tile(void *data, size_t index)
 static void fill_tile(void *data, size_t index)
 {
     const list_filling *work = data;
-    const overlap_tile *tile = &work->list->tiles[index];
+    overlap_tile *tile = &work->list->tiles[index];
     overlap_writer writer = {.runs = work->list->runs + tile->run, .weights = work->list->weights + tile->weight};
     generate_tile(work, tile, &writer);
+    tile->least_map_row = UINT16_MAX;
+    for (size_t i = 0; i < writer.run_count; i++) {
+        uint16_t first = writer.runs[i].row, last = (uint16_t)(first + writer.runs[i].more_rows);
+        tile->least_map_row = first < tile->least_map_row ? first : tile->least_map_row;
+        tile->greatest_map_row = last > tile->greatest_map_row ? last : tile->greatest_map_row;
+    }
 }
 
-helio_status overlap_list_create(helio_context *context, const overlap_geometry *geometry, overlap_generator generate,
-                                 overlap_list *list)
+helio_status overlap_list_create(helio_context *context, uint32_t size, overlap_generator generate,
+                                 const void *geometry, overlap_list *list)
 {
-    list_filling work = {geometry, generate, list};
-    HELIO_TRY(create_tiles(context, geometry->size, list));
+    list_filling work = {generate, geometry, list};
+    HELIO_TRY(create_tiles(context, size, list));
     context_parallel_for(context, list->tile_count, count_tile, &work);
     size_t runs = 0, weights = 0;
     for (size_t i = 0; i < list->tile_count; i++) {

@@ -10,19 +10,20 @@
 
 enum { OVERLAP_RUN_LIMIT = 32, OVERLAP_AHEAD = 16 };
 
-/* Neighbours in one row of the map under one texel. A lat-long map is taken in quarters of its width, so that it can be
- * turned by quarters and mirrored without wrapping a run around. */
+/* A rectangle of pixels under one texel, at most OVERLAP_RUN_LIMIT of them. A lat-long map is taken in quarters of its
+ * width, so that it can be turned by quarters and mirrored without wrapping a run around. */
 typedef struct overlap_run {
     uint32_t column; /* of the first pixel, in its quarter */
     uint16_t row;
-    uint8_t count;                 /* pixels, 1 to OVERLAP_RUN_LIMIT; each has a weight */
-    uint8_t quarter : 2, last : 1; /* last of its texel */
+    uint8_t count;                                /* pixels in a row; each has a weight */
+    uint8_t quarter : 2, last : 1, more_rows : 5; /* last of its texel; rows, not counting the first */
 } overlap_run;
 
 /* A rectangle of texels, and where its runs and weights begin. They follow each other in rows. */
 typedef struct overlap_tile {
     uint32_t first_row, end_row, first_column, end_column;
     size_t run, weight;
+    uint16_t least_map_row, greatest_map_row; /* of its runs */
 } overlap_tile;
 
 /* The texels of a quarter of a face, those with u <= 0 and v <= 0. They come in tiles that see a small part of the map
@@ -51,27 +52,28 @@ typedef struct overlap_writer {
     overlap_run *runs; /* NULL: they are only counted */
     float *weights;
     size_t run_count, weight_count; /* so far */
-    size_t texel_weight;            /* weights before this texel */
+    size_t texel_run, texel_weight; /* before this texel */
+    overlap_run latest;             /* the run written last */
     double area;                    /* of this texel so far */
 } overlap_writer;
 
 /* Writes the overlaps of the texels first_column ... end_column - 1 of a row. A writer that only counts may get any
- * positive areas. */
-typedef void (*overlap_generator)(const overlap_geometry *geometry, uint32_t row, uint32_t first_column,
-                                  uint32_t end_column, overlap_writer *writer);
+ * positive areas. geometry: what the generator needs to know. */
+typedef void (*overlap_generator)(const void *geometry, uint32_t row, uint32_t first_column, uint32_t end_column,
+                                  overlap_writer *writer);
 
 /* Lat-long maps: the faces +Z and +Y. */
 helio_status overlap_latlong_geometry(helio_context *context, uint32_t size, uint32_t width, uint32_t height,
                                       overlap_geometry *geometry);
-void overlap_side(const overlap_geometry *geometry, uint32_t row, uint32_t first_column, uint32_t end_column,
+void overlap_side(const void *geometry, uint32_t row, uint32_t first_column, uint32_t end_column,
                   overlap_writer *writer);
-void overlap_pole(const overlap_geometry *geometry, uint32_t row, uint32_t first_column, uint32_t end_column,
+void overlap_pole(const void *geometry, uint32_t row, uint32_t first_column, uint32_t end_column,
                   overlap_writer *writer);
 
 /* A square face of a strip. */
 helio_status overlap_strip_geometry(helio_context *context, uint32_t size, uint32_t map_size, bool openexr,
                                     overlap_geometry *geometry);
-void overlap_strip(const overlap_geometry *geometry, uint32_t row, uint32_t first_column, uint32_t end_column,
+void overlap_strip(const void *geometry, uint32_t row, uint32_t first_column, uint32_t end_column,
                    overlap_writer *writer);
 
 void overlap_geometry_release(helio_context *context, overlap_geometry *geometry);
@@ -81,8 +83,8 @@ void overlap_geometry_release(helio_context *context, overlap_geometry *geometry
 void overlap_write(overlap_writer *writer, overlap_run begin, const double *areas, uint32_t count);
 void overlap_end_texel(overlap_writer *writer);
 
-helio_status overlap_list_create(helio_context *context, const overlap_geometry *geometry, overlap_generator generate,
-                                 overlap_list *list);
+helio_status overlap_list_create(helio_context *context, uint32_t size, overlap_generator generate,
+                                 const void *geometry, overlap_list *list);
 void overlap_list_release(helio_context *context, overlap_list *list); /* {0} is fine */
 
 /* Face coordinate of the border before texel `index` of a cube of this size. */

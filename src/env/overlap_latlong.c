@@ -237,9 +237,9 @@ static great_circle side_circle(double v)
     return (great_circle){.height = fabs(v) * scale_by, .depth = scale_by, .south = v > 0};
 }
 
-void overlap_side(const overlap_geometry *geometry, uint32_t row, uint32_t first_column, uint32_t end_column,
-                  overlap_writer *writer)
+void overlap_side(const void *data, uint32_t row, uint32_t first_column, uint32_t end_column, overlap_writer *writer)
 {
+    const overlap_geometry *geometry = data;
     double v0 = texel_border(row, geometry->size), v1 = texel_border(row + 1, geometry->size);
     const great_circle upper = side_circle(v0), lower = side_circle(v1);
     texel_outline outline = {.upper = {&upper, &upper}, .lower = {&lower, &lower}};
@@ -329,9 +329,9 @@ static void write_pole_texel(const overlap_geometry *geometry, const pole_texel 
     write_outline(geometry, outline, writer);
 }
 
-void overlap_pole(const overlap_geometry *geometry, uint32_t row, uint32_t first_column, uint32_t end_column,
-                  overlap_writer *writer)
+void overlap_pole(const void *data, uint32_t row, uint32_t first_column, uint32_t end_column, overlap_writer *writer)
 {
+    const overlap_geometry *geometry = data;
     texel_outline outline = {0};
     pole_texel texel = {.z = {texel_border(row, geometry->size), texel_border(row + 1, geometry->size)}};
     for (int i = 0; i < 2; i++)

@@ -78,9 +78,9 @@ static void write_columns(const overlap_geometry *geometry, const stretch *down,
     }
 }
 
-void overlap_strip(const overlap_geometry *geometry, uint32_t row, uint32_t first_column, uint32_t end_column,
-                   overlap_writer *writer)
+void overlap_strip(const void *data, uint32_t row, uint32_t first_column, uint32_t end_column, overlap_writer *writer)
 {
+    const overlap_geometry *geometry = data;
     stretch down = find_stretch(geometry, row);
     for (uint32_t column = first_column; column < end_column; column++) {
         stretch across = find_stretch(geometry, column);

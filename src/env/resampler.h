@@ -3,6 +3,8 @@
 #ifndef HELIOSTAT_SRC_RESAMPLER_H
 #define HELIOSTAT_SRC_RESAMPLER_H
 
+#include "env/map_pixels.h"
+
 #include <heliostat/image.h>
 
 typedef struct resampler resampler;
@@ -19,10 +21,9 @@ typedef enum row_reading {
     ROW_BY_PIXEL, /* one by one, each through pixel_clean() */
 } row_reading;
 
-/* map: [height][width][3]. readings: [height], row_reading of each row; ROW_BY_PIXEL for those with NaN or infinite
- * channels, and for the last one, behind which nothing may be read. cube: [6][R][R][3], finite and >= 0. Takes no
- * memory. */
-void resampler_run(helio_context *context, const resampler *resampler, const float *map, const uint8_t *readings,
-                   float *cube);
+/* readings: [height], row_reading of each row; ROW_BY_PIXEL for those with NaN or infinite channels, and for the one
+ * behind which nothing may be read. cube: [6][R][R][3], finite and >= 0. Takes no memory. */
+void resampler_run(helio_context *context, const resampler *resampler, const map_pixels *pixels,
+                   const uint8_t *readings, float *cube);
 
 #endif

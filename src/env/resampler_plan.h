@@ -2,11 +2,10 @@
  * resampler_plan.h - what a resampler knows of its layout, found once and used for each frame.
  *
  * All layouts are symmetric: of the overlaps (overlap.h) of a face only one quarter is kept, and faces that differ by
- * where they are in the map share it. A strip has one such list, a lat-long map two: of a side and of a pole. Each
- * quarter of each face sees the map through a transformation of rows and columns, its view. Four views, two that
- * step through the map in one direction and two in the opposite one, are summed together, so that what is read from a
- * list serves all four. (Four in the same direction would often need the same lines of the nearest cache: rows and
- * quarters of maps are mostly a power of two apart.) */
+ * where they are in the map share it. Each quarter of each face sees the map through a transformation of rows and
+ * columns, its view. Four views, mirror images of each other, are summed together, so that what is read from a list
+ * serves all four. (Four in the same direction would often need the same lines of the nearest cache: rows and quarters
+ * of maps are mostly a power of two apart.) */
 #ifndef HELIOSTAT_SRC_RESAMPLER_PLAN_H
 #define HELIOSTAT_SRC_RESAMPLER_PLAN_H
 
@@ -14,7 +13,7 @@
 #include "env/overlap.h"
 #include "env/resampler.h"
 
-enum { MAX_LISTS = 2, GROUP_VIEWS = 4, MAX_GROUPS = CUBE_FACES };
+enum { MAX_LISTS = 6, GROUP_VIEWS = 4, MAX_GROUPS = CUBE_FACES, MAP_QUARTERS = 4 };
 
 /* Where the pixels of a list's runs are in the map, and the list's texels in the cube. Row of the map: offset + sign x
  * row of the run; columns likewise, and wrapped around. */
@@ -24,11 +23,11 @@ typedef struct quarter_view {
     int64_t texel, texel_row_step, texel_column_step;
 } quarter_view;
 
-/* Four views. In the first two, rows of runs go down the map; the last two step through the map backwards. */
+/* Mirror images: views[0] reads rows and columns of runs onwards, views[1] columns backwards, views[2] rows backwards,
+ * views[3] both. */
 typedef struct view_group {
     const overlap_list *list;
-    int64_t column_sign; /* of the first two */
-    int counts[2];       /* of the first and of the last */
+    unsigned filled; /* bit i: views[i] is there */
     quarter_view views[GROUP_VIEWS];
     uint8_t *readings; /* [list_rows], of this frame: row_reading that suits all views */
 } view_group;
@@ -43,5 +42,20 @@ struct resampler {
     view_group groups[MAX_GROUPS];
     uint8_t *readings; /* [group_count][list_rows] */
 };
+
+/* A place in a list. */
+typedef struct overlap_cursor {
+    const overlap_run *run;
+    const float *weight;
+} overlap_cursor;
+
+/* Column of the map, or of its parts, where a view sees a column of a quarter. */
+static inline int64_t quarter_view_column(const resampler *plan, const quarter_view *view, int64_t quarter,
+                                          int64_t column)
+{
+    int64_t width = (int64_t)plan->width << plan->part_shift;
+    int64_t found = view->column_offset + view->column_sign * (quarter * (width / MAP_QUARTERS) + column);
+    return (found + 2 * width) % width;
+}
 
 #endif

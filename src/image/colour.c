@@ -45,7 +45,7 @@ static double cofactor(const colour_matrix *a, int row, int column)
     return a->m[r1][c1] * a->m[r2][c2] - a->m[r1][c2] * a->m[r2][c1];
 }
 
-static bool invert(const colour_matrix *a, colour_matrix *inverse)
+bool colour_invert(const colour_matrix *a, colour_matrix *inverse)
 {
     double determinant = 0;
     for (int column = 0; column < 3; column++)
@@ -80,7 +80,7 @@ static bool matrix_to_xyz(const chromaticities *space, colour_matrix *matrix)
         columns.m[2][column] = 1 - primaries[column][0] - primaries[column][1];
     }
     double white[3], amounts[3];
-    if (!xyz_from_xy(space->white, white) || !invert(&columns, &inverse))
+    if (!xyz_from_xy(space->white, white) || !colour_invert(&columns, &inverse))
         return false;
     transform(&inverse, white, amounts);
     for (int row = 0; row < 3; row++)
@@ -104,7 +104,7 @@ static bool adaptation(const double from[2], const double to[2], colour_matrix *
         for (int column = 0; column < 3; column++)
             scaled.m[row][column] *= to_cone[row] / from_cone[row];
     }
-    invert(&BRADFORD, &inverse);
+    colour_invert(&BRADFORD, &inverse);
     *matrix = multiply(&inverse, &scaled);
     return true;
 }
@@ -126,7 +126,7 @@ colour_matrix colour_xyz_to_rec709(void)
 {
     colour_matrix to_xyz, from_xyz;
     matrix_to_xyz(&REC709, &to_xyz);
-    invert(&to_xyz, &from_xyz);
+    colour_invert(&to_xyz, &from_xyz);
     return from_xyz;
 }
 

@@ -21,6 +21,9 @@ bool colour_is_rec709(const chromaticities *space);
 /* RGB of that space to Rec. 709, white to white by Bradford's adaptation. false if the numbers span no colour space. */
 bool colour_to_rec709(const chromaticities *space, colour_matrix *matrix);
 
+/* false if there is no inverse. */
+bool colour_invert(const colour_matrix *matrix, colour_matrix *inverse);
+
 /* CIE XYZ to Rec. 709 as it stands: the XYZ of D65 with Y = 1 becomes (1, 1, 1). */
 colour_matrix colour_xyz_to_rec709(void);
 

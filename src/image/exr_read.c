@@ -4,6 +4,7 @@
 #include "core/context.h"
 #include "core/error.h"
 #include "image/colour.h"
+#include "image/layout_comment.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -291,6 +292,20 @@ static helio_status fit_window(exr_reader *reader)
     return exr_window_fit(reader->file, reader->window, display, reader->image);
 }
 
+static void read_comment(exr_reader *reader)
+{
+    char comment[LAYOUT_COMMENT_SIZE];
+    const char *text;
+    int32_t length;
+    if (reader->image->layout != HELIO_LAYOUT_AUTO ||
+        exr_attr_get_string(reader->library, reader->channels.part, "comments", &length, &text) != EXR_ERR_SUCCESS ||
+        length <= 0 || length >= LAYOUT_COMMENT_SIZE)
+        return;
+    memcpy(comment, text, (size_t)length);
+    comment[length] = 0;
+    reader->image->layout = layout_comment_read(comment, reader->image->width, reader->image->height);
+}
+
 static helio_status read_image(exr_reader *reader)
 {
     HELIO_TRY(exr_head_check(reader->file));
@@ -301,6 +316,7 @@ static helio_status read_image(exr_reader *reader)
     HELIO_TRY(create_image(reader));
     HELIO_TRY(read_pixels(reader));
     HELIO_TRY(fit_window(reader));
+    read_comment(reader);
     image_count_bad(reader->image);
     convert_colour(reader);
     return HELIO_OK;

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include "image/picture.h"
-
 #include "core/context.h"
 #include "core/error.h"
+#include "image/layout_comment.h"
+#include "image/map.h"
+#include "image/picture.h"
 
 #include <errno.h>
 #include <string.h>
@@ -19,7 +20,9 @@ typedef struct exr_layer {
 } exr_layer;
 
 typedef struct exr_writer {
-    const helio_picture *picture;
+    uint32_t width, height;
+    exr_pixel_type_t type; /* of the file; in memory all is float */
+    helio_layout layout;   /* AUTO: not an environment map */
     file_writer *file;
     exr_context_t library;
     int error; /* errno of the first write that failed, 0 if none has */
@@ -78,6 +81,20 @@ static void collect_layers(exr_writer *writer, const helio_picture *picture)
     add_layer(writer, "depth.Z", picture->depth, 1);
 }
 
+/* OpenEXR knows two layouts by an attribute of its own. */
+static exr_result_t note_layout(const exr_writer *writer, int part)
+{
+    char comment[LAYOUT_COMMENT_SIZE];
+    switch (writer->layout) {
+    case HELIO_LAYOUT_AUTO: return EXR_ERR_SUCCESS;
+    case HELIO_LAYOUT_LATLONG: return exr_attr_set_envmap(writer->library, part, "envmap", EXR_ENVMAP_LATLONG);
+    case HELIO_LAYOUT_STRIP_OPENEXR: return exr_attr_set_envmap(writer->library, part, "envmap", EXR_ENVMAP_CUBE);
+    default:
+        layout_comment_format(writer->layout, comment);
+        return exr_attr_set_string(writer->library, part, "comments", comment);
+    }
+}
+
 static exr_result_t write_header(exr_writer *writer)
 {
     exr_context_initializer_t initializer = EXR_DEFAULT_CONTEXT_INITIALIZER;
@@ -89,10 +106,12 @@ static exr_result_t write_header(exr_writer *writer)
     if (result == EXR_ERR_SUCCESS)
         result = exr_add_part(writer->library, NULL, EXR_STORAGE_SCANLINE, &part);
     if (result == EXR_ERR_SUCCESS)
-        result = exr_initialize_required_attr_simple(writer->library, part, (int32_t)writer->picture->width,
-                                                     (int32_t)writer->picture->height, EXR_COMPRESSION_ZIP);
+        result = exr_initialize_required_attr_simple(writer->library, part, (int32_t)writer->width,
+                                                     (int32_t)writer->height, EXR_COMPRESSION_ZIP);
+    if (result == EXR_ERR_SUCCESS)
+        result = note_layout(writer, part);
     for (size_t i = 0; i < writer->layer_count && result == EXR_ERR_SUCCESS; i++)
-        result = exr_add_channel(writer->library, part, writer->layers[i].name, EXR_PIXEL_FLOAT,
+        result = exr_add_channel(writer->library, part, writer->layers[i].name, writer->type,
                                  EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1); /* the library sorts them by name */
     return result == EXR_ERR_SUCCESS ? exr_write_header(writer->library) : result;
 }
@@ -105,7 +124,7 @@ static void aim_channels(exr_writer *writer, size_t row)
             const exr_layer *layer = &writer->layers[k];
             if (strcmp(layer->name, channel->channel_name) != 0)
                 continue;
-            size_t row_floats = layer->step * writer->picture->width;
+            size_t row_floats = layer->step * writer->width;
             channel->encode_from_ptr = (const uint8_t *)(layer->first + row * row_floats);
             channel->user_bytes_per_element = sizeof(float);
             channel->user_data_type = EXR_PIXEL_FLOAT;
@@ -137,7 +156,7 @@ static exr_result_t write_chunks(exr_writer *writer)
 {
     int32_t lines = 0;
     exr_result_t result = exr_get_scanlines_per_chunk(writer->library, 0, &lines);
-    for (uint32_t row = 0; result == EXR_ERR_SUCCESS && row < writer->picture->height; row += (uint32_t)lines)
+    for (uint32_t row = 0; result == EXR_ERR_SUCCESS && row < writer->height; row += (uint32_t)lines)
         result = write_chunk(writer, row);
     return result;
 }
@@ -152,16 +171,8 @@ static helio_status to_status(const exr_writer *writer, exr_result_t result)
                 writer->error ? strerror(writer->error) : exr_get_default_error_message(result));
 }
 
-helio_status exr_write(helio_context *context, file_writer *file, const helio_picture *picture,
-                       const helio_picture_write_desc *desc)
+static helio_status write_file(exr_writer *writer)
 {
-    (void)desc;
-    exr_writer *writer = context_allocate(context, 1, sizeof *writer);
-    if (writer == NULL)
-        return HELIO_ERR_MEMORY;
-    writer->picture = picture;
-    writer->file = file;
-    collect_layers(writer, picture);
     exr_result_t result = write_header(writer);
     if (result == EXR_ERR_SUCCESS)
         result = write_chunks(writer);
@@ -171,7 +182,41 @@ helio_status exr_write(helio_context *context, file_writer *file, const helio_pi
         exr_result_t finished = exr_finish(&writer->library); /* writes the table of chunks */
         result = result == EXR_ERR_SUCCESS ? finished : result;
     }
-    helio_status status = to_status(writer, result);
+    return to_status(writer, result);
+}
+
+helio_status exr_write(helio_context *context, file_writer *file, const helio_picture *picture,
+                       const helio_picture_write_desc *desc)
+{
+    (void)desc;
+    exr_writer *writer = context_allocate(context, 1, sizeof *writer);
+    if (writer == NULL)
+        return HELIO_ERR_MEMORY;
+    writer->width = picture->width;
+    writer->height = picture->height;
+    writer->type = EXR_PIXEL_FLOAT;
+    writer->file = file;
+    collect_layers(writer, picture);
+    helio_status status = write_file(writer);
+    context_release(context, writer);
+    return status;
+}
+
+helio_status exr_write_map(helio_context *context, file_writer *file, const helio_map *map,
+                           const helio_map_write_desc *desc)
+{
+    exr_writer *writer = context_allocate(context, 1, sizeof *writer);
+    if (writer == NULL)
+        return HELIO_ERR_MEMORY;
+    writer->width = map->width;
+    writer->height = map->height;
+    writer->type = desc->half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT;
+    writer->layout = map->layout;
+    writer->file = file;
+    static const char *const rgb[] = {"R", "G", "B"};
+    for (size_t c = 0; c < 3; c++)
+        add_layer(writer, rgb[c], map->rgb + c, 3);
+    helio_status status = write_file(writer);
     context_release(context, writer);
     return status;
 }

@@ -4,6 +4,7 @@
 #include "core/context.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "image/faces.h"
 #include "image/pixel_fault.h"
 
 #include <float.h>
@@ -54,6 +55,11 @@ static const image_kind *find_kind(const unsigned char *bytes, size_t size)
     return NULL;
 }
 
+bool image_is_picture(const unsigned char *bytes, size_t size)
+{
+    return find_kind(bytes, size) != NULL;
+}
+
 helio_status image_decode(const image_file *file, helio_image **image)
 {
     if (file->size == 0)
@@ -75,14 +81,9 @@ static uint64_t default_max_pixels(uint64_t file_size)
     return file_size < MODEST_PIXELS ? MODEST_PIXELS : file_size < MOST_PIXELS ? file_size : MOST_PIXELS;
 }
 
-helio_status helio_image_read(helio_context *context, const char *path, const helio_image_read_desc *desc,
+static helio_status read_file(helio_context *context, const char *path, const helio_image_read_desc *desc,
                               helio_image **image)
 {
-    if (image == NULL)
-        return fail(HELIO_ERR_ARGUMENT, "helio_image_read needs a place for the image");
-    *image = NULL;
-    if (context == NULL || path == NULL)
-        return fail(HELIO_ERR_ARGUMENT, "helio_image_read needs a context and a path");
     image_file file = {.context = context, .path = path, .without_alpha = desc != NULL && desc->without_alpha};
     const size_t limit = FILE_SIZE_LIMIT < SIZE_MAX / 2 ? (size_t)FILE_SIZE_LIMIT : SIZE_MAX / 2;
     unsigned char *bytes;
@@ -92,6 +93,21 @@ helio_status helio_image_read(helio_context *context, const char *path, const he
     helio_status status = image_decode(&file, image);
     context_release(context, bytes);
     return status;
+}
+
+helio_status helio_image_read(helio_context *context, const char *path, const helio_image_read_desc *desc,
+                              helio_image **image)
+{
+    if (image == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "helio_image_read needs a place for the image");
+    *image = NULL;
+    if (context == NULL || path == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "helio_image_read needs a context and a path");
+    if (!faces_are_meant(path, desc != NULL && desc->layout == HELIO_LAYOUT_FACES))
+        return read_file(context, path, desc, image);
+    face_files files;
+    HELIO_TRY(faces_find(path, &files));
+    return faces_read(context, &files, desc, image);
 }
 
 void helio_image_destroy(helio_context *context, helio_image *image)

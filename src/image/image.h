@@ -24,6 +24,9 @@ typedef struct image_file {
     uint8_t **texels;
 } image_file;
 
+/* Do the first bytes of a file, 16 or all, tell of a picture of a kind that is known here? */
+bool image_is_picture(const unsigned char *bytes, size_t size);
+
 /* Reads the picture that the file holds; its first bytes tell the kind. */
 helio_status image_decode(const image_file *file, helio_image **image);
 

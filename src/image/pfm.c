@@ -132,21 +132,26 @@ static void write_float(unsigned char bytes[4], float value)
         bytes[i] = (unsigned char)(bits >> 8 * i);
 }
 
+helio_status pfm_write_pixels(helio_context *context, file_writer *writer, const picture_pixels *pixels)
+{
+    unsigned char *row_bytes = context_allocate(context, pixels->width, 12);
+    if (row_bytes == NULL)
+        return HELIO_ERR_MEMORY;
+    fprintf(writer->stream, "PF\n%u %u\n-1.0\n", pixels->width, pixels->height);
+    for (uint32_t row = pixels->height; row-- > 0;) {
+        const float *colours = pixels->colours + pixels->channels * row * pixels->width;
+        for (size_t column = 0; column < pixels->width; column++)
+            for (size_t c = 0; c < 3; c++)
+                write_float(row_bytes + 12 * column + 4 * c, colours[pixels->channels * column + c]);
+        fwrite(row_bytes, 12, pixels->width, writer->stream); /* failures are found by file_writer_commit() */
+    }
+    context_release(context, row_bytes);
+    return HELIO_OK;
+}
+
 helio_status pfm_write(helio_context *context, file_writer *writer, const helio_picture *picture,
                        const helio_picture_write_desc *desc)
 {
     (void)desc;
-    unsigned char *row_bytes = context_allocate(context, picture->width, 12);
-    if (row_bytes == NULL)
-        return HELIO_ERR_MEMORY;
-    fprintf(writer->stream, "PF\n%u %u\n-1.0\n", picture->width, picture->height);
-    for (uint32_t row = picture->height; row-- > 0;) {
-        const float *rgba = picture->rgba + 4 * (size_t)row * picture->width;
-        for (size_t column = 0; column < picture->width; column++)
-            for (size_t c = 0; c < 3; c++)
-                write_float(row_bytes + 12 * column + 4 * c, rgba[4 * column + c]);
-        fwrite(row_bytes, 12, picture->width, writer->stream); /* failures are found by file_writer_commit() */
-    }
-    context_release(context, row_bytes);
-    return HELIO_OK;
+    return pfm_write_pixels(context, writer, &(picture_pixels){picture->width, picture->height, picture->rgba, 4});
 }

@@ -33,39 +33,49 @@ static void on_warning(png_structp library, png_const_charp message)
 }
 
 /* All that may jump: nothing here is a variable that would have to survive the jump. */
-static helio_status encode(png_encoder *encoder, const helio_picture *picture, const helio_picture_write_desc *desc)
+static helio_status encode(png_encoder *encoder, const picture_pixels *pixels, const helio_picture_write_desc *desc)
 {
     png_structp library = encoder->library;
     if (setjmp(png_jmpbuf(library)) != 0)
         return fail(HELIO_ERR_IO, "%s cannot be written: %s", encoder->path, encoder->message);
     png_init_io(library, encoder->stream);
-    png_set_user_limits(library, picture->width, picture->height);
-    png_set_IHDR(library, encoder->info, picture->width, picture->height, 8,
+    png_set_user_limits(library, pixels->width, pixels->height);
+    png_set_IHDR(library, encoder->info, pixels->width, pixels->height, 8,
                  desc->alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(library, encoder->info, PNG_sRGB_INTENT_RELATIVE);
     png_set_compression_level(library, 3); /* 0.6 of the time of 6, the default, for files a tenth larger */
     png_write_info(library, encoder->info);
-    size_t channels = desc->alpha ? 4 : 3;
-    for (size_t row = 0; row < picture->height; row++) {
-        for (size_t column = 0; column < picture->width; column++)
-            tonemap_pixel(picture->rgba + 4 * (row * picture->width + column), desc, encoder->row + channels * column);
+    size_t bytes = desc->alpha ? 4 : 3;
+    const float *colour = pixels->colours;
+    for (size_t row = 0; row < pixels->height; row++) {
+        for (size_t column = 0; column < pixels->width; column++, colour += pixels->channels) {
+            const float rgba[4] = {colour[0], colour[1], colour[2], pixels->channels == 4 ? colour[3] : 1};
+            tonemap_pixel(rgba, desc, encoder->row + bytes * column);
+        }
         png_write_row(library, encoder->row);
     }
     png_write_end(library, NULL);
     return HELIO_OK;
 }
 
-helio_status png_write(helio_context *context, file_writer *writer, const helio_picture *picture,
-                       const helio_picture_write_desc *desc)
+helio_status png_write_pixels(helio_context *context, file_writer *writer, const picture_pixels *pixels,
+                              const helio_picture_write_desc *desc)
 {
     png_encoder encoder = {.path = writer->path, .context = context, .stream = writer->stream};
-    encoder.row = context_allocate(context, picture->width, 4);
+    encoder.row = context_allocate(context, pixels->width, 4);
     encoder.library = png_create_write_struct(PNG_LIBPNG_VER_STRING, &encoder, on_error, on_warning);
     encoder.info = encoder.library ? png_create_info_struct(encoder.library) : NULL;
-    helio_status status = encoder.row && encoder.info ? encode(&encoder, picture, desc)
+    helio_status status = encoder.row && encoder.info ? encode(&encoder, pixels, desc)
                                                       : fail(HELIO_ERR_MEMORY, "no memory to write %s", writer->path);
     png_destroy_write_struct(&encoder.library, &encoder.info);
     context_release(context, encoder.row);
     return status;
+}
+
+helio_status png_write(helio_context *context, file_writer *writer, const helio_picture *picture,
+                       const helio_picture_write_desc *desc)
+{
+    const picture_pixels pixels = {picture->width, picture->height, picture->rgba, 4};
+    return png_write_pixels(context, writer, &pixels, desc);
 }

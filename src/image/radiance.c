@@ -30,7 +30,7 @@ static size_t left(const byte_reader *reader)
 }
 
 /* One component of a scan line: a count above 128 starts a run of one value, others that many values. */
-static const char *decode_component(byte_reader *reader, unsigned char *rgbe, uint32_t length)
+static const char *decode_component(byte_reader *reader, unsigned char *values, uint32_t length)
 {
     for (uint32_t done = 0; done < length;) {
         if (left(reader) < 2)
@@ -42,8 +42,10 @@ static const char *decode_component(byte_reader *reader, unsigned char *rgbe, ui
             return "is damaged: a run does not fit its scan line";
         if (left(reader) < (is_run ? 1 : count))
             return "ends in the middle of a scan line";
-        for (uint32_t i = 0; i < count; i++)
-            rgbe[4 * (done + i)] = is_run ? reader->at[0] : reader->at[i];
+        if (is_run)
+            memset(values + done, reader->at[0], count);
+        else
+            memcpy(values + done, reader->at, count);
         reader->at += is_run ? 1 : count;
         done += count;
     }
@@ -53,26 +55,32 @@ static const char *decode_component(byte_reader *reader, unsigned char *rgbe, ui
 static const char *decode_old_line(byte_reader *reader, unsigned char *rgbe, uint32_t length)
 {
     unsigned shift = 0; /* successive repeats are the digits of one count, the lowest first */
+    const unsigned char *last = NULL;
     for (uint32_t done = 0; done < length;) {
         if (left(reader) < 4)
             return "ends in the middle of a scan line";
         const unsigned char *pixel = reader->at;
         reader->at += 4;
         if (pixel[0] != 1 || pixel[1] != 1 || pixel[2] != 1) {
-            memcpy(rgbe + 4 * (size_t)done++, pixel, 4);
+            for (size_t component = 0; component < 4; component++)
+                rgbe[component * length + done] = pixel[component];
+            last = pixel;
+            done++;
             shift = 0;
             continue;
         }
-        if (done == 0 || shift > 16 || (uint32_t)pixel[3] << shift > length - done)
+        if (last == NULL || shift > 16 || (uint32_t)pixel[3] << shift > length - done)
             return "is damaged: a run does not fit its scan line";
-        for (uint32_t count = (uint32_t)pixel[3] << shift; count > 0; count--, done++)
-            memcpy(rgbe + 4 * (size_t)done, rgbe + 4 * (size_t)(done - 1), 4);
+        uint32_t count = (uint32_t)pixel[3] << shift;
+        for (size_t component = 0; component < 4; component++)
+            memset(rgbe + component * length + done, last[component], count);
+        done += count;
         shift += 8;
     }
     return NULL;
 }
 
-/* Decodes one scan line to [length][4]. Returns what is wrong, or NULL. */
+/* Decodes one scan line to [4][length]. Returns what is wrong, or NULL. */
 static const char *decode_line(byte_reader *reader, unsigned char *rgbe, uint32_t length)
 {
     bool is_new = length >= NEW_CODING_LEAST && length <= NEW_CODING_MOST && left(reader) >= 4 && reader->at[0] == 2 &&
@@ -84,7 +92,7 @@ static const char *decode_line(byte_reader *reader, unsigned char *rgbe, uint32_
     reader->at += 4;
     const char *problem = NULL;
     for (int component = 0; component < 4 && problem == NULL; component++)
-        problem = decode_component(reader, rgbe + component, length);
+        problem = decode_component(reader, rgbe + (size_t)component * length, length);
     return problem;
 }
 
@@ -123,10 +131,13 @@ static void store_line(const radiance_header *header, const radiance_units *unit
     size_t start;
     ptrdiff_t step;
     place_line(header, image, line, &start, &step);
-    for (uint32_t i = 0; i < header->line_length; i++, rgbe += 4) {
+    const size_t length = header->line_length;
+    const unsigned char *exponents = rgbe + 3 * length;
+    for (size_t i = 0; i < length; i++) {
         float *rgb = image->rgb + 3 * ((ptrdiff_t)start + step * (ptrdiff_t)i);
-        for (int c = 0; c < 3; c++)
-            rgb[c] = (float)((rgbe[c] + 0.5) * units->unit[rgbe[3]][c]);
+        const double *unit = units->unit[exponents[i]];
+        for (size_t c = 0; c < 3; c++)
+            rgb[c] = (float)((rgbe[c * length + i] + 0.5) * unit[c]);
     }
 }
 
@@ -182,6 +193,7 @@ helio_status radiance_read(const image_file *file, helio_image **out)
         return status;
     }
     convert_colour(file, &header, image);
+    image->layout = layout_comment_read(header.layout, width, height);
     *out = image;
     return HELIO_OK;
 }

@@ -59,12 +59,21 @@ static helio_status parse_format(const image_file *file, const char *value, radi
     return HELIO_OK;
 }
 
+/* Too long a one is another comment. */
+static void copy_comment(const char *comment, char layout[LAYOUT_COMMENT_SIZE])
+{
+    if (strlen(comment) < LAYOUT_COMMENT_SIZE)
+        strcpy(layout, comment);
+}
+
 static helio_status parse_line(const image_file *file, const char *line, radiance_header *header)
 {
     const char *value;
     double numbers[8];
     if (has_name(line, "FORMAT", &value))
         return parse_format(file, value, header);
+    if (strncmp(line, "# layout: ", 10) == 0)
+        copy_comment(line + 2, header->layout);
     if (has_name(line, "EXPOSURE", &value)) {
         if (!read_numbers(value, 1, numbers) || !(numbers[0] > 0))
             return fail(HELIO_ERR_DATA, "%s has a bad line \"%.60s\": one positive number belongs there", file->path,

@@ -5,12 +5,15 @@
 
 #include "image/colour.h"
 #include "image/image.h"
+#include "image/layout_comment.h"
 
 typedef struct radiance_header {
     bool xyz;                 /* FORMAT=32-bit_rle_xyze */
     double divisor[3];        /* product of all EXPOSURE and COLORCORR lines */
     bool has_primaries;       /* PRIMARIES was there */
     chromaticities primaries; /* valid if so */
+
+    char layout[LAYOUT_COMMENT_SIZE]; /* the comment about it; "" if there is none */
 
     /* The resolution line "-Y 512 +X 1024" has the scan lines first. */
     uint32_t line_count, line_length;

@@ -33,10 +33,10 @@ static unsigned char to_byte(float value)
     return (unsigned char)(clamp(value, 1) * 255 + 0.5f);
 }
 
-void tonemap_pixel(const float rgba[4], const helio_picture_write_desc *desc, unsigned char *pixel)
+void tonemap_linear(const float rgba[4], const helio_picture_write_desc *desc, float rgb[3])
 {
     const float much = 1e30f; /* a stand-in for infinity that can be divided */
-    float alpha = clamp(rgba[3], 1), factor = exp2f(desc->exposure), rgb[3];
+    float alpha = clamp(rgba[3], 1), factor = exp2f(desc->exposure);
     for (int c = 0; c < 3; c++) {
         float colour = rgba[c];
         if (desc->alpha)
@@ -45,7 +45,15 @@ void tonemap_pixel(const float rgba[4], const helio_picture_write_desc *desc, un
     }
     float divisor = desc->tonemap == HELIO_TONEMAP_REINHARD ? 1 + luminance(rgb) : 1;
     for (int c = 0; c < 3; c++)
-        pixel[c] = to_byte(srgb_encode(clamp(rgb[c] / divisor, 1)));
+        rgb[c] = clamp(rgb[c] / divisor, 1);
+}
+
+void tonemap_pixel(const float rgba[4], const helio_picture_write_desc *desc, unsigned char *pixel)
+{
+    float rgb[3];
+    tonemap_linear(rgba, desc, rgb);
+    for (int c = 0; c < 3; c++)
+        pixel[c] = to_byte(srgb_encode(rgb[c]));
     if (desc->alpha)
-        pixel[3] = to_byte(alpha);
+        pixel[3] = to_byte(clamp(rgba[3], 1));
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * elementary.h - logarithm, exponential, sine and cosine as polynomials, so that loops over samples become vectors.
+ * elementary.h - logarithm, exponential, sine, cosine and arc cosine as polynomials, so that loops over samples become
+ * vectors.
  *
  * Minimax polynomials (Lawson's iteration in double precision, coefficients rounded to float), in Estrin's form where
  * many operations would else wait for each other. No branch, no table, no call; the same operations in every build, so
@@ -8,6 +9,7 @@
 #ifndef HELIOSTAT_SRC_ELEMENTARY_H
 #define HELIOSTAT_SRC_ELEMENTARY_H
 
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -101,6 +103,25 @@ static inline float sine_of_turn(float turn)
 static inline float cosine_of_turn(float turn)
 {
     return -sine_of_quarter(0.25f - magnitude(turn - 0.5f));
+}
+
+/* The angle whose cosine is 1 - versine, 0 ... pi, for 0 <= versine <= 2 and what rounding adds. Abramowitz and Stegun
+ * 4.4.46, which has no need of the cosine near 0: relative error below 4e-7, however small the angle is. */
+static inline float angle_of_versine(float versine)
+{
+    float beyond = 2.0f - versine;
+    beyond = beyond > 0.0f ? beyond : 0.0f;
+    float near = versine < beyond ? versine : beyond, x = 1.0f - near;
+    float q = -0.0012624911f;
+    q = q * x + 0.0066700901f;
+    q = q * x - 0.0170881256f;
+    q = q * x + 0.0308918810f;
+    q = q * x - 0.0501743046f;
+    q = q * x + 0.0889789874f;
+    q = q * x - 0.2145988016f;
+    q = q * x + 1.5707963050f;
+    float angle = sqrtf(near) * q;
+    return versine < beyond ? angle : 3.14159265f - angle;
 }
 
 #endif

@@ -16,6 +16,11 @@
 #define KERNEL(name) KERNEL_NAME(name, HELIO_ISA)
 
 struct background;
+struct overlap_tile;
+struct resampling;
+struct view_group;
+struct sky_light;
+struct sky_row;
 
 typedef struct kernel_set {
     /* Prefix sums of the weights of one row of texels. rgb: [size][3]. solid_angles: [size], or NULL for luminance
@@ -39,6 +44,16 @@ typedef struct kernel_set {
      * are. */
     uint32_t (*fill_background)(const struct background *b, uint32_t count, const float *x, const float *y,
                                 float (*rgba)[4], uint32_t *left);
+
+    /* Radiance of the sky along a row of texel centres. rgb: one array [count][3] for the top face, or one for each of
+     * the side faces. The same bits with every instruction set. */
+    void (*fill_sky)(const struct sky_light *light, const struct sky_row *row, float *const *rgb);
+
+    /* The texels of a tile in four views. The same bits with every instruction set. */
+    void (*resample)(const struct resampling *work, const struct view_group *group, const struct overlap_tile *tile);
+
+    /* Is there perhaps a pixel among these numbers that is not light? Surely not if this is false. */
+    bool (*may_have_faults)(const void *numbers, uint32_t count, bool half);
 } kernel_set;
 
 const kernel_set *kernels_of(isa set);
@@ -55,6 +70,9 @@ void KERNEL(weigh)(const gathering *g, sample_block *block);
 block_sum KERNEL(sum_block)(const sample_block *block);
 uint32_t KERNEL(fill_background)(const struct background *b, uint32_t count, const float *x, const float *y,
                                  float (*rgba)[4], uint32_t *left);
+void KERNEL(fill_sky)(const struct sky_light *light, const struct sky_row *row, float *const *rgb);
+void KERNEL(resample)(const struct resampling *work, const struct view_group *group, const struct overlap_tile *tile);
+bool KERNEL(may_have_faults)(const void *numbers, uint32_t count, bool half);
 extern const kernel_set KERNEL(kernels);
 #endif
 

@@ -11,4 +11,7 @@ const kernel_set KERNEL(kernels) = {
     .weigh = KERNEL(weigh),
     .sum_block = KERNEL(sum_block),
     .fill_background = KERNEL(fill_background),
+    .fill_sky = KERNEL(fill_sky),
+    .resample = KERNEL(resample),
+    .may_have_faults = KERNEL(may_have_faults),
 };

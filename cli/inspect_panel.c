@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: MIT
+ * The panel of the picture that tells in words what was found. */
+#include "inspect_drawing.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct drawing_box {
+    double left, width;
+} drawing_box;
+
+static const char *last_part(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash != NULL && slash[1] != 0 ? slash + 1 : path;
+}
+
+/* Smaller if it is wide; then its start is cut off, as the end of a name tells more. */
+static void draw_name(cairo_t *cairo, double x, double y, double width, const char *name)
+{
+    enum { LARGEST = 17, SMALLEST = 11 };
+    char text[256];
+    const char *rest = name;
+    int size = LARGEST;
+    snprintf(text, sizeof text, "%s", name);
+    set_font(cairo, size, true);
+    while (size > SMALLEST && text_width(cairo, text) > width)
+        set_font(cairo, --size, true);
+    while (*rest != 0 && text_width(cairo, text) > width) {
+        rest++;
+        while ((*rest & 0xc0) == 0x80) /* in the middle of a character */
+            rest++;
+        snprintf(text, sizeof text, "\u2026%s", rest);
+    }
+    draw_text(cairo, x, y, 0, text);
+}
+
+/* Breaks lines at blanks. Returns the y of the next line. */
+static double draw_paragraph(cairo_t *cairo, double x, double y, double width, double line, const char *text)
+{
+    char row[256] = "";
+    while (*text != 0) {
+        size_t word = strcspn(text, " "), used = strlen(row);
+        char longer[2 * sizeof row];
+        snprintf(longer, sizeof longer, "%s%s%.*s", row, used ? " " : "", (int)(word < 128 ? word : 128), text);
+        if (used > 0 && text_width(cairo, longer) > width) {
+            draw_text(cairo, x, y, 0, row);
+            y += line;
+            row[0] = 0;
+            continue;
+        }
+        snprintf(row, sizeof row, "%.*s", (int)sizeof row - 1, longer);
+        text += word;
+        text += strspn(text, " ");
+    }
+    draw_text(cairo, x, y, 0, row);
+    return y + line;
+}
+
+static double draw_line(const drawing *d, drawing_box box, double y, const char *label, const char *text)
+{
+    enum { LABEL_WIDTH = 92, LINE = 21 };
+    set_font(d->cairo, 13, false);
+    set_grey(d->cairo, FAINT);
+    draw_text(d->cairo, box.left, y, 0, label);
+    set_grey(d->cairo, INK);
+    return draw_paragraph(d->cairo, box.left + LABEL_WIDTH, y, box.width - LABEL_WIDTH, LINE, text);
+}
+
+static double draw_spot_lines(const drawing *d, drawing_box box, double y)
+{
+    const inspect_spot *spot = &d->found->spot;
+    char text[256];
+    if (!d->found->has_spot)
+        return draw_line(d, box, y, "brightest", "nothing is twice as bright as the mean");
+    snprintf(text, sizeof text, "azimuth %.1f\u00b0, elevation %.1f\u00b0, %.3g sr", spot->azimuth, spot->elevation,
+             spot->solid_angle);
+    y = draw_line(d, box, y, "brightest", text);
+    snprintf(text, sizeof text, "%.3g %% of all light, %.3g %% of that on the ground", 100 * spot->share,
+             100 * spot->irradiance_share);
+    return draw_line(d, box, y, "it gives", text);
+}
+
+void draw_findings(const drawing *d, double left, double top, double width)
+{
+    const inspect_findings *found = d->found;
+    const helio_bad_pixels *bad = &found->bad;
+    const drawing_box box = {left, width};
+    double y = top + 16;
+    char text[256];
+    set_grey(d->cairo, INK);
+    draw_name(d->cairo, left, y, width, last_part(found->name));
+    y += 30;
+    if (found->width > 0)
+        snprintf(text, sizeof text, "%s, %" PRIu32 " \u00d7 %" PRIu32 ", %s (%s)", found->file_kind, found->width,
+                 found->height, helio_layout_name(found->layout), found->layout_why);
+    else
+        snprintf(text, sizeof text, "%s", found->file_kind);
+    y = draw_line(d, box, y, "file", text);
+    snprintf(text, sizeof text, "%.3g to %.6g, %.1f stops; mean %.3g", found->least, found->greatest, found->stops,
+             found->mean_luminance);
+    y = draw_line(d, box, y, "luminance", text);
+    snprintf(text, sizeof text, "%.4g in all, on the ground %.4g; faces: parts of all", found->all_flux,
+             found->irradiance);
+    y = draw_line(d, box, y, "flux", text);
+    snprintf(text, sizeof text, "%" PRIu64 " NaN, %" PRIu64 " infinite, %" PRIu64 " negative, %" PRIu64 " out of gamut",
+             bad->nan, bad->infinite, bad->negative, found->out_of_gamut);
+    bool is_good = bad->nan + bad->infinite + bad->negative + found->out_of_gamut == 0;
+    y = draw_line(d, box, y, "bad pixels", is_good ? "none" : text);
+    y = draw_spot_lines(d, box, y);
+    inspect_clipping_tell(found, text, sizeof text);
+    y = draw_line(d, box, y, "clipped", text);
+    draw_line(d, box, y, "advice", found->advice);
+}

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT */
+#include "numbered_path.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char DIGITS[] = "0123456789";
+static const unsigned MOST_DIGITS = 19;
+
+/* Folders may have any name. */
+static const char *last_part(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash != NULL ? slash + 1 : path;
+}
+
+bool numbered_path_is_pattern(const char *path)
+{
+    for (const char *percent = strchr(last_part(path), '%'); percent != NULL; percent = strchr(percent + 1, '%'))
+        if (percent[1 + strspn(percent + 1, DIGITS)] == 'd')
+            return true;
+    return false;
+}
+
+bool numbered_path_parse(const char *pattern, numbered_path *path)
+{
+    const char *percent = strchr(last_part(pattern), '%');
+    if (percent == NULL || strchr(percent + 1, '%') != NULL)
+        return false;
+    size_t length = strspn(percent + 1, DIGITS);
+    bool has_width = percent[1] == '0' && length >= 2 && length <= 3;
+    unsigned digits = has_width ? (unsigned)strtoul(percent + 1, NULL, 10) : 1;
+    if (percent[1 + length] != 'd' || (length > 0 && !has_width) || digits < 1 || digits > MOST_DIGITS)
+        return false;
+    *path = (numbered_path){.pattern = pattern, .start = (size_t)(percent - pattern), .digits = digits};
+    path->end = path->start + 1 + length + 1;
+    return true;
+}
+
+bool numbered_path_format(const numbered_path *path, uint64_t number, char *name, size_t size)
+{
+    int length = snprintf(name, size, "%.*s%0*" PRIu64 "%s", (int)path->start, path->pattern, (int)path->digits, number,
+                          path->pattern + path->end);
+    return length >= 0 && (size_t)length < size;
+}

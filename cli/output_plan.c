@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: MIT */
+#include "output_plan.h"
+
+#include "message.h"
+#include "output_file.h"
+
+#include <errno.h>
+#include <fnmatch.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+static const char PICTURE_OUT[] = "heliostat.png", NUMBERED_OUT[] = "heliostat_%04d.png";
+
+static bool is(const char *value, const char *word)
+{
+    return strcmp(value, word) == 0;
+}
+
+static bool has_extension(const char *path, const char *extension)
+{
+    const char *dot = strrchr(path, '.');
+    return dot != NULL && strcasecmp(dot + 1, extension) == 0;
+}
+
+static int check_pattern(const render_plan *plan)
+{
+    numbered_path names;
+    if (plan->sink == SINK_NUMBERED && !numbered_path_parse(plan->out, &names))
+        return message_usage("--out %s takes one number, such as %%04d or %%d, and no other %%", plan->out);
+    return EXIT_CODE_OK;
+}
+
+static helio_video_write_desc video_desc(const cli_options *options)
+{
+    return (helio_video_write_desc){
+        .width = options->size[0],
+        .height = options->size[1],
+        .fps = options->fps,
+        .codec = options->codec,
+        .quality = (float)options->quality,
+        .hdr = options->hdr,
+    };
+}
+
+static int check_video(render_plan *plan)
+{
+    plan->video = video_desc(plan->options);
+    if (plan->sink == SINK_VIDEO && helio_video_check_path(plan->out, &plan->video) != HELIO_OK)
+        return message_usage("--out: %s", helio_last_error());
+    return EXIT_CODE_OK;
+}
+
+/* A folder stands for numbered pictures in it. */
+static int set_out(render_plan *plan, const char *out)
+{
+    plan->sink = frame_sink_kind_of(out);
+    bool is_folder = frame_sink_is_folder(out);
+    size_t length = strlen(out);
+    int needed = snprintf(plan->out, sizeof plan->out, "%s%s%s", out, is_folder && out[length - 1] != '/' ? "/" : "",
+                          is_folder ? NUMBERED_OUT : "");
+    if (needed < 0 || (size_t)needed >= sizeof plan->out)
+        return message_usage("--out takes a path of less than %zu bytes, not one of %d", sizeof plan->out, needed);
+    return EXIT_CODE_OK;
+}
+
+static int check_files(const render_plan *plan)
+{
+    const cli_options *options = plan->options;
+    const char *out = options->out != NULL ? plan->out : PICTURE_OUT;
+    if (plan->sink != SINK_VIDEO && helio_picture_check_path(out) != HELIO_OK)
+        return message_usage("--out: %s", helio_last_error());
+    if (options->aovs && !has_extension(out, "exr"))
+        return message_usage("--aovs writes layers, which only EXR holds; give --out a name that ends in .exr, not %s",
+                             out);
+    if (options->stats != NULL && is(options->stats, out))
+        return message_usage("--stats and --out both name %s; give two files", out);
+    return EXIT_CODE_OK;
+}
+
+static int check_contact_sheet(const cli_options *options)
+{
+    const char *sheet = options->contact_sheet;
+    if (sheet == NULL)
+        return EXIT_CODE_OK;
+    if (!has_extension(sheet, "png") || helio_picture_check_path(sheet) != HELIO_OK)
+        return message_usage("--contact-sheet writes a PNG; give it a name that ends in .png, not %s", sheet);
+    if ((options->out != NULL && is(options->out, sheet)) || (options->stats != NULL && is(options->stats, sheet)))
+        return message_usage("--contact-sheet and another option both name %s; give two files", sheet);
+    return EXIT_CODE_OK;
+}
+
+int output_plan_check(render_plan *plan)
+{
+    const cli_options *options = plan->options;
+    int code = options->out != NULL ? set_out(plan, options->out) : EXIT_CODE_OK;
+    if (code == EXIT_CODE_OK)
+        code = check_pattern(plan);
+    if (code == EXIT_CODE_OK)
+        code = check_video(plan);
+    if (code == EXIT_CODE_OK)
+        code = check_files(plan);
+    return code == EXIT_CODE_OK ? check_contact_sheet(options) : code;
+}
+
+void output_plan_warn(const render_plan *plan)
+{
+    const cli_options *options = plan->options;
+    bool is_video = plan->sink == SINK_VIDEO, is_shown = is_video || has_extension(plan->out, "png");
+    bool has_exposure = !isnan(options->exposure) || plan->tonemap != HELIO_TONEMAP_CLIP;
+    if (has_exposure && !is_shown && options->contact_sheet == NULL)
+        message_warning("--exposure and --tonemap change nothing in %s: EXR and PFM hold radiance as it is", plan->out);
+    if (plan->alpha && (is_video || has_extension(plan->out, "pfm")))
+        message_warning("%s cannot hold the alpha channel of this picture; EXR and PNG can", plan->out);
+    if ((options->codec != NULL || options->quality > 0 || options->hdr) && !is_video)
+        message_warning("--codec, --quality and --hdr change nothing in %s, which is no video", plan->out);
+    if (options->resume && is_video)
+        message_warning("%s is made anew: a video cannot be resumed, numbered pictures can", plan->out);
+    if (options->resume && plan->sink == SINK_PICTURE)
+        message_warning("--resume changes nothing for one picture");
+}
+
+/* ---- once the source is known ------------------------------------------------------------ */
+
+static bool is_one_frame(const render_plan *plan)
+{
+    const frame_range *frames = &plan->options->frames;
+    return frames->is_given && frames->first == frames->last;
+}
+
+static int choose_out(render_plan *plan, bool is_dynamic)
+{
+    if (plan->options->out == NULL)
+        return set_out(plan, is_dynamic ? NUMBERED_OUT : PICTURE_OUT);
+    if (plan->sink != SINK_PICTURE || !is_dynamic || is_one_frame(plan))
+        return EXIT_CODE_OK;
+    const char *dot = strrchr(plan->out, '.');
+    return message_usage("--out %s is one picture, but %s has many frames; give --out a name with %%04d, as in "
+                         "%.*s_%%04d%s, a folder or a video, or take one frame by --frames N..N",
+                         plan->out, plan->light.specification, (int)(dot - plan->out), plan->out, dot);
+}
+
+/* Length of the part up to the last slash, the slash included. */
+static size_t folder_length(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash != NULL ? (size_t)(slash - path) + 1 : 0;
+}
+
+static bool is_same_folder(const char *path, const char *other_path)
+{
+    const char *paths[] = {path, other_path};
+    struct stat status[2];
+    for (int i = 0; i < 2; i++) {
+        char folder[SINK_PATH_SIZE + 2];
+        if (snprintf(folder, sizeof folder, "%.*s.", (int)folder_length(paths[i]), paths[i]) >= (int)sizeof folder ||
+            stat(folder, &status[i]) != 0)
+            return false;
+    }
+    return status[0].st_dev == status[1].st_dev && status[0].st_ino == status[1].st_ino;
+}
+
+/* Pictures that a glob finds may be inputs that are still to be read. */
+static int check_glob(const render_plan *plan)
+{
+    const char *glob = plan->light.specification;
+    char name[SINK_PATH_SIZE];
+    numbered_path names;
+    if (plan->light.kind != HELIO_SOURCE_SEQUENCE || plan->sink != SINK_NUMBERED ||
+        !numbered_path_parse(plan->out, &names) || !numbered_path_format(&names, 0, name, sizeof name))
+        return EXIT_CODE_OK;
+    bool is_found = fnmatch(glob, name, FNM_PATHNAME) == 0 ||
+                    (is_same_folder(glob, name) &&
+                     fnmatch(glob + folder_length(glob), name + folder_length(name), FNM_PATHNAME) == 0);
+    if (!is_found)
+        return EXIT_CODE_OK;
+    return message_usage("--out %s makes names that --env %s matches, so inputs might be replaced; give --out another "
+                         "folder or name",
+                         plan->out, glob);
+}
+
+static int check_sink(const render_plan *plan, const char *const *inputs)
+{
+    char name[SINK_PATH_SIZE];
+    numbered_path names;
+    if (plan->sink != SINK_NUMBERED)
+        return output_file_check("out", plan->out, inputs);
+    if (!numbered_path_parse(plan->out, &names) || !numbered_path_format(&names, UINT32_MAX, name, sizeof name))
+        return message_usage("--out %s makes names that are too long", plan->out);
+    return output_file_check("out", name, inputs);
+}
+
+/* Only the last folder: a path that is mistyped should not become a tree. */
+static int make_folder(render_plan *plan)
+{
+    const char *folder = plan->options->out;
+    if (folder == NULL || !frame_sink_is_folder(folder))
+        return EXIT_CODE_OK;
+    plan->has_made_folder = mkdir(folder, 0777) == 0;
+    if (plan->has_made_folder || errno == EEXIST)
+        return EXIT_CODE_OK;
+    return message_failure("the folder %s cannot be made: %s; give --out another path", folder, strerror(errno));
+}
+
+int output_plan_settle(render_plan *plan, bool is_dynamic)
+{
+    const cli_options *options = plan->options;
+    const char *const inputs[] = {plan->light.specification, plan->mesh, NULL};
+    int code = choose_out(plan, is_dynamic);
+    if (code == EXIT_CODE_OK)
+        code = check_glob(plan);
+    if (code == EXIT_CODE_OK && options->stats != NULL)
+        code = output_file_check("stats", options->stats, inputs);
+    if (code == EXIT_CODE_OK && options->contact_sheet != NULL)
+        code = output_file_check("contact-sheet", options->contact_sheet, inputs);
+    if (code == EXIT_CODE_OK)
+        code = make_folder(plan);
+    return code == EXIT_CODE_OK ? check_sink(plan, inputs) : code;
+}

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: MIT
+ * render_job.h - the objects that render works with, and the making of one frame with them. */
+#ifndef HELIOSTAT_CLI_RENDER_JOB_H
+#define HELIOSTAT_CLI_RENDER_JOB_H
+
+#include "frame_warnings.h"
+#include "progress.h"
+#include "render_plan.h"
+#include "stats.h"
+
+typedef struct render_job {
+    render_plan plan;
+    helio_context *context;
+    helio_source *source;
+    helio_source_info source_info;
+    helio_environment *environment;
+    helio_mesh *mesh;
+    helio_scene *scene;
+    helio_renderer *renderer;
+    helio_camera camera;
+    progress_bar progress;
+    frame_warnings warnings;
+    uint32_t passes; /* of the latest frame */
+} render_job;
+
+/* Understands the options, opens the source and starts reading it, and loads the scene. Returns an exit code; one
+ * sentence on stderr tells what failed. */
+int render_job_open(render_job *job, const cli_options *options);
+void render_job_close(render_job *job);
+
+/* The next frame of the source; rgb and sky are NULL at the end. */
+helio_status render_job_next(render_job *job, helio_source_frame *frame, stats_frame *stats);
+
+/* Makes it the light of the scene. light: what was seen in it. */
+helio_status render_job_light(render_job *job, const helio_source_frame *frame, helio_environment_info *light,
+                              stats_frame *stats);
+
+/* Renders what is lit now. *is_whole is false where a signal stopped it. */
+helio_status render_job_render(render_job *job, uint64_t index, stats_frame *stats, bool *is_whole);
+
+#endif

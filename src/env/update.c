@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A new frame: pixels are looked at for faults, then summed into the cube. */
+#include "core/context.h"
+#include "core/error.h"
+#include "env/environment.h"
+#include "env/exposure.h"
+#include "env/resampler.h"
+#include "image/pixel_fault.h"
+#include "sampling/kernels.h"
+
+typedef struct hygiene {
+    helio_environment *environment;
+    const kernel_set *kernels;
+    map_pixels pixels;
+} hygiene;
+
+static void count_faults(const hygiene *work, size_t row, uint32_t first, uint32_t end, helio_bad_pixels *bad)
+{
+    uint64_t faults[PIXEL_GOOD + 1] = {0};
+    for (uint32_t column = first; column < end; column++) {
+        float rgb[3];
+        map_pixels_read(&work->pixels, (int64_t)row, column, rgb);
+        faults[pixel_fault_of(rgb)]++;
+    }
+    bad->nan += faults[PIXEL_NAN];
+    bad->infinite += faults[PIXEL_INFINITE];
+    bad->negative += faults[PIXEL_NEGATIVE];
+}
+
+/* Whether the last pixel of a row is the last one in memory, too, and has no alpha: reading a number more would leave
+ * the map. */
+static bool is_last_in_memory(const hygiene *work, size_t row)
+{
+    uint32_t numbers = work->pixels.pixel_bytes / (work->pixels.half ? sizeof(uint16_t) : sizeof(float));
+    return numbers == 3 && row == (work->pixels.row_bytes > 0 ? work->environment->map.height - 1 : 0);
+}
+
+static void check_row(void *data, size_t row)
+{
+    enum { PIECE = 256 }; /* pixels that are looked at one by one if there is a fault among them */
+    hygiene *work = data;
+    environment_map *map = &work->environment->map;
+    const uint32_t numbers = work->pixels.pixel_bytes / (work->pixels.half ? sizeof(uint16_t) : sizeof(float));
+    helio_bad_pixels bad = {0};
+    for (uint32_t first = 0; first < map->width; first += PIECE) {
+        uint32_t count = map->width - first < PIECE ? map->width - first : PIECE;
+        const void *piece = map_pixels_at(&work->pixels, (int64_t)row, first);
+        if (work->kernels->may_have_faults(piece, count * numbers, work->pixels.half))
+            count_faults(work, row, first, first + count, &bad);
+    }
+    map->row_faults[row] = bad;
+    map->row_readings[row] = bad.nan + bad.infinite > 0 || is_last_in_memory(work, row) ? ROW_BY_PIXEL
+                             : bad.negative > 0                                         ? ROW_CLAMPED
+                                                                                        : ROW_AS_IT_IS;
+}
+
+void environment_finish_frame(helio_environment *environment, helio_bad_pixels bad, helio_environment_info *info)
+{
+    environment->frame++;
+    if (info == NULL)
+        return;
+    *info = (helio_environment_info){.bad = bad};
+    exposure_measure(environment, info);
+}
+
+static helio_status resolve_pixels(const environment_map *map, const helio_pixels *given, map_pixels *pixels)
+{
+    if ((unsigned)given->format > HELIO_PIXELS_RGBA_HALF)
+        return fail(HELIO_ERR_ARGUMENT, "pixel format %d is unknown; use a value of helio_pixel_format",
+                    (int)given->format);
+    bool alpha = given->format == HELIO_PIXELS_RGBA_FLOAT || given->format == HELIO_PIXELS_RGBA_HALF;
+    bool half = given->format == HELIO_PIXELS_RGB_HALF || given->format == HELIO_PIXELS_RGBA_HALF;
+    uint32_t number = half ? sizeof(uint16_t) : sizeof(float);
+    *pixels = (map_pixels){
+        .first = given->data, .row_bytes = given->row_bytes, .pixel_bytes = (alpha ? 4 : 3) * number, .half = half};
+    ptrdiff_t least = (ptrdiff_t)map->width * pixels->pixel_bytes;
+    if (pixels->row_bytes == 0)
+        pixels->row_bytes = least;
+    if (pixels->row_bytes < least && pixels->row_bytes > -least)
+        return fail(HELIO_ERR_ARGUMENT, "rows of %u pixels take %td bytes; row_bytes cannot be %td", map->width, least,
+                    given->row_bytes);
+    if (pixels->row_bytes % number != 0 || (uintptr_t)given->data % number != 0)
+        return fail(HELIO_ERR_ARGUMENT, "pixels and row_bytes (%td) must be multiples of a number's size, %u bytes",
+                    given->row_bytes, number);
+    return HELIO_OK;
+}
+
+helio_status helio_environment_update_pixels(helio_environment *environment, const helio_pixels *given,
+                                             helio_environment_info *info)
+{
+    if (environment == NULL || given == NULL || given->data == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "an update needs an environment and pixels");
+    const environment_map *map = &environment->map;
+    if (map->resampler == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "this environment was created without a map; call "
+                                        "helio_environment_reshape() before it is updated from one");
+    hygiene work = {.environment = environment, .kernels = kernels_of(context_isa(environment->context))};
+    HELIO_TRY(resolve_pixels(map, given, &work.pixels));
+    context_parallel_for(environment->context, map->height, check_row, &work);
+    resampler_run(environment->context, map->resampler, &work.pixels, map->row_readings, environment->cube);
+    helio_bad_pixels bad = {0};
+    for (uint32_t row = 0; row < map->height; row++) {
+        bad.nan += map->row_faults[row].nan;
+        bad.infinite += map->row_faults[row].infinite;
+        bad.negative += map->row_faults[row].negative;
+    }
+    environment_finish_frame(environment, bad, info);
+    return HELIO_OK;
+}
+
+helio_status helio_environment_update(helio_environment *environment, const float *rgb, helio_environment_info *info)
+{
+    return helio_environment_update_pixels(environment, &(helio_pixels){.data = rgb}, info);
+}
