@@ -2,8 +2,10 @@
 # with its lanes and options in KERNEL_LANES_... and KERNEL_OPTIONS_... for others who build for each. The program chooses at run
 # time, so nothing but these files may be compiled for more than the target's baseline.
 
-set(KERNEL_SOURCES src/cpu/background_kernel.c src/env/fault_kernel.c src/env/resampling_kernel.c src/env/sky_kernel.c
-    src/sampling/pools_kernel.c src/sampling/set_kernel.c src/sampling/surface_kernel.c src/sampling/tables_kernel.c src/sampling/weigh_kernel.c)
+set(KERNEL_SOURCES
+    src/cpu/background_kernel.c src/env/exposure_kernel.c src/env/fault_kernel.c src/env/resampling_kernel.c
+    src/env/sky_kernel.c src/sampling/pools_kernel.c src/sampling/set_kernel.c src/sampling/surface_kernel.c
+    src/sampling/tables_kernel.c src/sampling/weigh_kernel.c)
 set(KERNEL_OBJECTS "")
 set(KERNEL_ISAS "")
 

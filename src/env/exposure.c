@@ -2,10 +2,11 @@
 #include "env/exposure.h"
 
 #include "core/context.h"
+#include "sampling/kernels.h"
 
 #include <string.h>
 
-enum { BLOCKS = 8, LIGHTS = CUBE_FACES * BLOCKS * BLOCKS };
+enum { BLOCKS = EXPOSURE_BLOCKS, LIGHTS = CUBE_FACES * BLOCKS * BLOCKS, STRIP_ROWS = 32 };
 
 /* A block of texels taken as one distant light. */
 typedef struct block_light {
@@ -16,6 +17,7 @@ typedef struct block_light {
 
 typedef struct measurement {
     const helio_environment *environment;
+    const kernel_set *kernels;
     block_light lights[LIGHTS];
 } measurement;
 
@@ -25,47 +27,34 @@ typedef struct cell_grid {
     uint32_t size, split; /* cells along an edge of the face, and of a texel */
 } cell_grid;
 
+/* The cells of texels that are cut, one by one. */
 static void read_cells(const helio_environment *environment, const cell_grid *grid, uint32_t face, uint32_t row,
-                       uint32_t first_column, uint32_t count, float *restrict values, float *restrict solid_angles)
+                       uint32_t first_column, uint32_t count, float *rgb, float *solid_angles)
 {
     const float *texels = environment_texel(environment, face, row / grid->split, 0);
-    if (grid->split == 1) {
-        for (uint32_t i = 0; i < count; i++)
-            values[i] = luminance(texels + 3 * (size_t)(first_column + i));
-        memcpy(solid_angles, environment->solid_angle + (size_t)row * grid->size + first_column, count * sizeof(float));
-        return;
-    }
     for (uint32_t i = 0; i < count; i++) {
         double step = 2.0 / grid->size, u = step * (first_column + i) - 1.0, v = step * row - 1.0;
-        values[i] = luminance(texels + 3 * (size_t)((first_column + i) / grid->split));
+        memcpy(rgb + 3 * (size_t)i, texels + 3 * (size_t)((first_column + i) / grid->split), 3 * sizeof(float));
         solid_angles[i] = (float)cube_solid_angle(u, u + step, v, v + step);
     }
 }
 
-enum { MAX_COLUMNS = CUBE_MAX_SIZE / BLOCKS, STRIP_ROWS = 32 };
-
-/* Sums over the cells of a column in some rows: few enough for floats. */
-typedef struct column_sums {
-    float u[MAX_COLUMNS];
-    float flux[MAX_COLUMNS];
-    float along_axis[MAX_COLUMNS], along_down[MAX_COLUMNS]; /* of the moment */
-    float brightest[MAX_COLUMNS];
-} column_sums;
-
-static void add_row(float v, const float *restrict values, const float *restrict solid_angles, uint32_t count,
-                    column_sums *restrict sums)
+static void add_cells(const measurement *work, const cell_grid *grid, uint32_t face, uint32_t row, uint32_t column,
+                      uint32_t count, exposure_columns *sums)
 {
-    for (uint32_t i = 0; i < count; i++) {
-        float u = sums->u[i], flux = values[i] * solid_angles[i];
-        float along_axis = flux / sqrtf(1.0f + u * u + v * v);
-        sums->flux[i] += flux;
-        sums->along_axis[i] += along_axis;
-        sums->along_down[i] += along_axis * v;
-        sums->brightest[i] = values[i] > sums->brightest[i] ? values[i] : sums->brightest[i];
+    const helio_environment *environment = work->environment;
+    float v = (2.0f * (float)row + 1.0f) / (float)grid->size - 1.0f;
+    float rgb[3 * BLOCKS], solid_angles[BLOCKS]; /* cut are only texels of cubes with fewer of them */
+    if (grid->split == 1) {
+        work->kernels->add_light(environment_texel(environment, face, row, column),
+                                 environment->solid_angle + (size_t)row * grid->size + column, v, count, sums);
+        return;
     }
+    read_cells(environment, grid, face, row, column, count, rgb, solid_angles);
+    work->kernels->add_light(rgb, solid_angles, v, count, sums);
 }
 
-static void add_columns(const column_sums *sums, uint32_t face, uint32_t count, block_light *light)
+static void add_columns(const exposure_columns *sums, uint32_t face, uint32_t count, block_light *light)
 {
     const cube_face *f = &cube_faces[face];
     for (uint32_t i = 0; i < count; i++) {
@@ -89,15 +78,11 @@ static void measure_block(void *data, size_t index)
     uint32_t column = block % BLOCKS * grid.size / BLOCKS;
     uint32_t count = (block % BLOCKS + 1) * grid.size / BLOCKS - column;
     for (uint32_t row = first_row; row < end_row; row += STRIP_ROWS) {
-        float values[MAX_COLUMNS], solid_angles[MAX_COLUMNS];
-        column_sums sums = {.u = {0}};
+        exposure_columns sums = {.u = {0}};
         for (uint32_t i = 0; i < count; i++)
             sums.u[i] = (2.0f * (float)(column + i) + 1.0f) / (float)grid.size - 1.0f;
-        for (uint32_t i = row; i < end_row && i < row + STRIP_ROWS; i++) {
-            float v = (2.0f * (float)i + 1.0f) / (float)grid.size - 1.0f;
-            read_cells(work->environment, &grid, face, i, column, count, values, solid_angles);
-            add_row(v, values, solid_angles, count, &sums);
-        }
+        for (uint32_t i = row; i < end_row && i < row + STRIP_ROWS; i++)
+            add_cells(work, &grid, face, i, column, count, &sums);
         add_columns(&sums, face, count, &work->lights[index]);
     }
 }
@@ -131,7 +116,7 @@ static double brightest_irradiance(const measurement *work)
 
 void exposure_measure(const helio_environment *environment, helio_environment_info *info)
 {
-    measurement work = {.environment = environment};
+    measurement work = {.environment = environment, .kernels = kernels_of(context_isa(environment->context))};
     context_parallel_for(environment->context, LIGHTS, measure_block, &work);
     double total = 0;
     info->max_luminance = 0;

@@ -16,6 +16,7 @@
 #define KERNEL(name) KERNEL_NAME(name, HELIO_ISA)
 
 struct background;
+struct exposure_columns;
 struct overlap_tile;
 struct resampling;
 struct view_group;
@@ -54,6 +55,11 @@ typedef struct kernel_set {
 
     /* Is there perhaps a pixel among these numbers that is not light? Surely not if this is false. */
     bool (*may_have_faults)(const void *numbers, uint32_t count, bool half);
+
+    /* Adds texels of a row to the sums of their columns. rgb: [count][3]. solid_angles: [count]. v: of the row's
+     * centre. The same bits with every instruction set. */
+    void (*add_light)(const float *rgb, const float *solid_angles, float v, uint32_t count,
+                      struct exposure_columns *sums);
 } kernel_set;
 
 const kernel_set *kernels_of(isa set);
@@ -73,6 +79,8 @@ uint32_t KERNEL(fill_background)(const struct background *b, uint32_t count, con
 void KERNEL(fill_sky)(const struct sky_light *light, const struct sky_row *row, float *const *rgb);
 void KERNEL(resample)(const struct resampling *work, const struct view_group *group, const struct overlap_tile *tile);
 bool KERNEL(may_have_faults)(const void *numbers, uint32_t count, bool half);
+void KERNEL(add_light)(const float *rgb, const float *solid_angles, float v, uint32_t count,
+                       struct exposure_columns *sums);
 extern const kernel_set KERNEL(kernels);
 #endif
 

@@ -14,4 +14,5 @@ const kernel_set KERNEL(kernels) = {
     .fill_sky = KERNEL(fill_sky),
     .resample = KERNEL(resample),
     .may_have_faults = KERNEL(may_have_faults),
+    .add_light = KERNEL(add_light),
 };
