@@ -225,7 +225,7 @@ static int check_json(const bench_plan *plan)
 {
     const char *path = plan->options->bench.json;
     const char *const inputs[] = {plan->light.specification, plan->mesh, NULL};
-    return path != NULL && strcmp(path, "-") != 0 ? output_file_check("json", path, inputs) : EXIT_CODE_OK;
+    return path != NULL && strcmp(path, "-") != 0 ? output_file_check("json", path, NULL, inputs) : EXIT_CODE_OK;
 }
 
 int bench_plan_make(bench_plan *plan, const cli_options *options)

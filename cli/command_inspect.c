@@ -38,15 +38,15 @@ static int failure(void)
     return message_failure("%s", helio_last_error());
 }
 
-static int check_outputs(const cli_options *options, const char *input)
+static int check_outputs(const inspection *job, const char *input)
 {
-    const inspect_options *inspect = &options->inspect;
+    const inspect_options *inspect = &job->options->inspect;
     const char *const inputs[] = {input, NULL};
     int code = EXIT_CODE_OK;
     if (inspect->json != NULL && strcmp(inspect->json, "-") != 0)
-        code = output_file_check("json", inspect->json, inputs);
+        code = output_file_check("json", inspect->json, job->source, inputs);
     if (code == EXIT_CODE_OK && inspect->out != NULL)
-        code = output_file_check("out", inspect->out, inputs);
+        code = output_file_check("out", inspect->out, job->source, inputs);
     return code;
 }
 
@@ -54,6 +54,9 @@ static int check_options(const cli_options *options)
 {
     const inspect_options *inspect = &options->inspect;
     int code = input_source_check(options, "inspect");
+    if (code == EXIT_CODE_OK && options->quiet && inspect->json == NULL && inspect->out == NULL)
+        code = message_usage("inspect --quiet would tell nothing; give --json FILE or --out PICTURE as well, or leave "
+                             "--quiet out");
     if (code == EXIT_CODE_OK && inspect->out != NULL)
         code = inspect_picture_check(inspect->out);
     if (code == EXIT_CODE_OK && inspect->out != NULL && inspect->json != NULL &&
@@ -89,7 +92,7 @@ static int inspect_frame(inspection *job, const helio_source_frame *frame)
 {
     helio_environment_info light;
     inspect_findings found;
-    int code = check_outputs(job->options, frame->name);
+    int code = check_outputs(job, frame->name);
     if (code == EXIT_CODE_OK)
         code = make_cube(job, frame, &light);
     if (code != EXIT_CODE_OK)

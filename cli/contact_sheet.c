@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "contact_sheet.h"
 
-#include "message.h"
 #include "sheet_labels.h"
 
 #include <math.h>
@@ -159,15 +158,15 @@ static void fill_sheet(const contact_sheet *sheet, const sheet_shape *shape, flo
     sheet_labels_draw(labels, sheet->count, shape->width, shape->height, rgba);
 }
 
-int contact_sheet_write(const contact_sheet *sheet, helio_context *context, const char *path)
+helio_status contact_sheet_write(const contact_sheet *sheet, helio_context *context, const char *path)
 {
     sheet_shape shape = find_shape(sheet);
     float *rgba = malloc((size_t)shape.width * shape.height * 4 * sizeof rgba[0]);
     if (rgba == NULL)
-        return message_failure("no memory for the contact sheet %s", path);
+        return HELIO_ERR_MEMORY;
     fill_sheet(sheet, &shape, rgba);
     const helio_picture picture = {.width = shape.width, .height = shape.height, .rgba = rgba};
     helio_status status = helio_picture_write(context, path, &picture, NULL);
     free(rgba);
-    return status == HELIO_OK ? EXIT_CODE_OK : message_failure("%s", helio_last_error());
+    return status;
 }

@@ -38,7 +38,7 @@ bool contact_sheet_wants(const contact_sheet *sheet, uint64_t position);
 /* Adds a frame that is wanted, of the size of all, with a label that stands beneath it. */
 void contact_sheet_add(contact_sheet *sheet, const contact_sheet_picture *picture, const char *label);
 
-/* Writes a PNG; there is at least one frame. Returns an exit code; one sentence on stderr tells what failed. */
-int contact_sheet_write(const contact_sheet *sheet, helio_context *context, const char *path);
+/* Writes a PNG; there is at least one frame. HELIO_ERR_MEMORY may come without a sentence. */
+helio_status contact_sheet_write(const contact_sheet *sheet, helio_context *context, const char *path);
 
 #endif

@@ -44,16 +44,20 @@ static int check_output(convert_plan *plan)
 {
     const char *out = plan->options->convert.out;
     bool is_faces = plan->to == HELIO_LAYOUT_FACES;
+    char name[CONVERT_PATH_SIZE];
     plan->is_numbered = numbered_path_is_pattern(out);
-    if (plan->is_numbered && is_faces)
-        return message_usage("--out %s asks for six faces of each frame, which convert does not write; take one frame "
-                             "by --frames N..N, or write them as --to strip",
-                             out);
-    if (plan->is_numbered && !numbered_path_parse(out, &plan->names))
+    if (plan->is_numbered && is_faces && !numbered_path_parse_faces(out, &plan->names))
+        return message_usage("--out %s cannot name six files of each frame; give it one number and one %%s, as in "
+                             "%.*smap_%%04d_%%s.hdr",
+                             out, (int)output_file_folder_length(out), out);
+    if (plan->is_numbered && !is_faces && !numbered_path_parse(out, &plan->names))
         return message_usage("--out %s takes one number, such as %%04d or %%d, and no other %%", out);
     if (!is_faces && names_faces(out))
         return message_usage("--out %s names six files or a folder, which only --to faces writes; give one file", out);
-    if (helio_map_check_path(out, is_faces ? HELIO_LAYOUT_FACES : HELIO_LAYOUT_LATLONG) != HELIO_OK)
+    if (plan->is_numbered && !numbered_path_format(&plan->names, UINT32_MAX, name, sizeof name))
+        return message_usage("--out %s makes names that are too long", out);
+    if (helio_map_check_path(plan->is_numbered ? name : out, is_faces ? HELIO_LAYOUT_FACES : HELIO_LAYOUT_LATLONG) !=
+        HELIO_OK)
         return message_usage("--out: %s", helio_last_error());
     plan->is_png = has_extension(out, "png");
     return EXIT_CODE_OK;
@@ -118,22 +122,38 @@ static bool is_same_place(const char *a, const char *b)
 
 /* ---- once the source is known ------------------------------------------------------------ */
 
+/* --out is one map, or six files, but there are many frames. */
+static int ask_for_number(const convert_plan *plan, const helio_source_info *source)
+{
+    const char *out = plan->options->convert.out, *dot = strrchr(out, '.'), *faces = strstr(out, "%s");
+    char advice[CONVERT_PATH_SIZE];
+    size_t length = strlen(out);
+    while (length > 1 && out[length - 1] == '/')
+        length--;
+    if (plan->to == HELIO_LAYOUT_FACES && faces == NULL) /* a folder, which may not be there */
+        snprintf(advice, sizeof advice, "%.*s_%%04d_%%s.hdr", (int)length, out);
+    else if (faces != NULL)
+        snprintf(advice, sizeof advice, "%.*s%%04d_%s", (int)(faces - out), out, faces);
+    else
+        snprintf(advice, sizeof advice, "%.*s_%%04d%s", dot ? (int)(dot - out) : 0, out, dot ? dot : "");
+    return message_usage("--out %s is one map, but %s has many frames; give --out a name with %%04d, as in %s, or take "
+                         "one frame by --frames N..N",
+                         out, source->label, advice);
+}
+
 int convert_plan_settle(const convert_plan *plan, const helio_source_info *source)
 {
     const frame_range *frames = &plan->options->frames;
-    const char *out = plan->options->convert.out, *dot = strrchr(out, '.');
+    const char *out = plan->options->convert.out;
     bool is_one = frames->is_given && frames->first == frames->last;
     char name[CONVERT_PATH_SIZE];
     if (!plan->is_numbered && source->is_dynamic && !is_one)
-        return message_usage("--out %s is one map, but %s has many frames; give --out a name with %%04d, as in "
-                             "%.*s_%%04d%s, or take one frame by --frames N..N",
-                             out, source->label, dot ? (int)(dot - out) : 0, out, dot ? dot : "");
-    if (plan->is_numbered && !numbered_path_format(&plan->names, UINT32_MAX, name, sizeof name))
-        return message_usage("--out %s makes names that are too long", out);
+        return ask_for_number(plan, source);
     if (plan->to == HELIO_LAYOUT_FACES && is_same_place(out, source->label))
         return message_usage("--out %s would replace the input; give it another folder or name", out);
     /* Files that the source has still to read must not be replaced. */
-    if (plan->is_numbered && (strcmp(out, source->label) == 0 || fnmatch(source->label, name, FNM_PATHNAME) == 0))
+    if (plan->is_numbered && numbered_path_format(&plan->names, UINT32_MAX, name, sizeof name) &&
+        (strcmp(out, source->label) == 0 || fnmatch(source->label, name, FNM_PATHNAME) == 0))
         return message_usage("--out %s makes names that %s means too, so inputs might be replaced; give --out another "
                              "folder or name",
                              out, source->label);
@@ -164,12 +184,29 @@ int convert_plan_shape(const convert_plan *plan, const map_shape *from, map_shap
     return EXIT_CODE_OK;
 }
 
-int convert_plan_path(const convert_plan *plan, const helio_source_frame *frame, char path[CONVERT_PATH_SIZE])
+/* The six files that the library makes of a folder, or of a name with %s. */
+static int check_faces(const char *out, helio_source *source)
+{
+    static const char *const faces[] = {"px", "nx", "py", "ny", "pz", "nz"};
+    const char *percent = strstr(out, "%s");
+    for (size_t i = 0; i < 6; i++) {
+        char path[CONVERT_PATH_SIZE];
+        int length = percent != NULL
+                         ? snprintf(path, sizeof path, "%.*s%s%s", (int)(percent - out), out, faces[i], percent + 2)
+                         : snprintf(path, sizeof path, "%s/%s.exr", out, faces[i]);
+        if (length < CONVERT_PATH_SIZE && helio_source_check_output(source, path) != HELIO_OK)
+            return message_failure("%s; give --out another folder or name", helio_last_error());
+    }
+    return EXIT_CODE_OK;
+}
+
+int convert_plan_path(const convert_plan *plan, helio_source *source, const helio_source_frame *frame,
+                      char path[CONVERT_PATH_SIZE])
 {
     const char *out = plan->options->convert.out;
     const char *const inputs[] = {frame->name, NULL};
     if (plan->is_numbered ? !numbered_path_format(&plan->names, frame->index, path, CONVERT_PATH_SIZE)
                           : snprintf(path, CONVERT_PATH_SIZE, "%s", out) >= CONVERT_PATH_SIZE)
         return message_usage("--out takes a path of less than %d bytes", CONVERT_PATH_SIZE);
-    return plan->to == HELIO_LAYOUT_FACES ? EXIT_CODE_OK : output_file_check("out", path, inputs);
+    return plan->to == HELIO_LAYOUT_FACES ? check_faces(path, source) : output_file_check("out", path, source, inputs);
 }

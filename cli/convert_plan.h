@@ -30,8 +30,9 @@ int convert_plan_settle(const convert_plan *plan, const helio_source_info *sourc
 /* The map that is made from one of shape from. Returns an exit code as above. */
 int convert_plan_shape(const convert_plan *plan, const map_shape *from, map_shape *to);
 
-/* Where the map of this frame goes: looks whether it can be written there, without replacing the frame itself. Returns
- * an exit code as above, or EXIT_CODE_FAILED. */
-int convert_plan_path(const convert_plan *plan, const helio_source_frame *frame, char path[CONVERT_PATH_SIZE]);
+/* Where the map of this frame goes: looks whether it can be written there, without replacing a file of the
+ * source. Returns an exit code as above, or EXIT_CODE_FAILED. */
+int convert_plan_path(const convert_plan *plan, helio_source *source, const helio_source_frame *frame,
+                      char path[CONVERT_PATH_SIZE]);
 
 #endif

@@ -220,8 +220,12 @@ helio_status frame_sink_close(frame_sink *sink)
     if (sink->video != NULL) {
         helio_status status = helio_video_finish(sink->video, sink->written > 0);
         sink->video = NULL;
-        if (sink->status == HELIO_OK && sink->written > 0)
-            sink->status = keep_error(sink, status);
+        if (sink->written > 0 && status != HELIO_OK) {
+            sink->lost = sink->written;
+            sink->written = 0;
+            if (sink->status == HELIO_OK)
+                sink->status = keep_error(sink, status);
+        }
     }
     free(sink->memory);
     sink->memory = NULL;

@@ -37,6 +37,7 @@ typedef struct frame_sink {
     numbered_path names;
     helio_video_writer *video;
     uint64_t written; /* frames; to be read after frame_sink_flush() */
+    uint64_t lost;    /* frames of a video that could not be finished, which are not among those */
 
     /* The frame that is being written, or waits for it. */
     helio_picture picture; /* its layers are in memory of the sink where has_thread */
@@ -65,7 +66,8 @@ helio_status frame_sink_add(frame_sink *sink, uint64_t index, const helio_pictur
 /* Waits until all frames are written. sink->error tells what failed. */
 helio_status frame_sink_flush(frame_sink *sink);
 
-/* Waits as well; a video is finished if it has frames, else removed. */
+/* Waits as well; a video is finished if it has frames, else removed, and so is one that cannot be
+ * finished: its frames are lost. */
 helio_status frame_sink_close(frame_sink *sink);
 
 #endif

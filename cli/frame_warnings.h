@@ -10,7 +10,8 @@
 #include <stdatomic.h>
 
 typedef struct frame_warnings {
-    uint64_t bad_frames, bad_pixels;
+    uint64_t bad_frames, bad_pixels;     /* NaN, infinite or negative */
+    uint64_t gamut_frames, gamut_pixels; /* of colours that Rec. 709 cannot hold */
     uint64_t size_changes;
     uint32_t width, height;   /* of the frame before */
     atomic_uint_fast64_t log; /* warnings of the library, from any thread */

@@ -56,7 +56,8 @@ int input_source_open(const cli_options *options, helio_context *context, helio_
     return status == HELIO_OK ? EXIT_CODE_OK : message_failure("%s", helio_last_error());
 }
 
-void input_source_warn(frame_warnings *warnings, const helio_source_frame *frame, const helio_environment_info *light)
+void input_source_warn(frame_warnings *warnings, const char *label, const helio_source_frame *frame,
+                       const helio_environment_info *light)
 {
     uint64_t negative = frame->bad.negative;
     const stats_frame seen = {
@@ -65,5 +66,5 @@ void input_source_warn(frame_warnings *warnings, const helio_source_frame *frame
         .negative = negative,
         .out_of_gamut = light->bad.negative > negative ? light->bad.negative - negative : 0,
     };
-    frame_warnings_bad_pixels(warnings, frame->name, &seen);
+    frame_warnings_bad_pixels(warnings, label, &seen);
 }

@@ -18,7 +18,9 @@ helio_status input_source_context(const cli_options *options, frame_warnings *wa
 /* Returns an exit code as above, EXIT_CODE_FAILED where files are the reason. */
 int input_source_open(const cli_options *options, helio_context *context, helio_source **source);
 
-/* Warns of pixels that are no light, if there are any. light: what the environment saw of the same frame. */
-void input_source_warn(frame_warnings *warnings, const helio_source_frame *frame, const helio_environment_info *light);
+/* Warns of pixels that are no light, if there are any. label: what messages call the frame. light: what the environment
+ * saw of the same frame. */
+void input_source_warn(frame_warnings *warnings, const char *label, const helio_source_frame *frame,
+                       const helio_environment_info *light);
 
 #endif

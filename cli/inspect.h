@@ -15,12 +15,17 @@ typedef struct inspect_histogram {
     double black;                                       /* solid angle where there is no light */
 } inspect_histogram;
 
-/* The brightest texel of the cube with all its neighbours, near and far, of a tenth of its luminance or more. */
+/* A spot that stands out ends where luminance falls below this part of its greatest. */
+#define SPOT_FIRST_EDGE 0.1
+
+/* The brightest texel of the cube with all its neighbours, near and far, of at least so much of its luminance that it
+ * is no large part of the sphere. */
 typedef struct inspect_spot {
     double direction[3];       /* unit vector; of its light's centre */
     double azimuth, elevation; /* degrees; from -Z over +X (from north over east under a sky), above the horizon */
     double solid_angle;        /* sr */
     double luminance;          /* of its brightest texel */
+    double edge;               /* where it ends, as a part of that */
     double share;              /* of all light */
     double irradiance_share;   /* of the light on a horizontal surface that faces up */
 } inspect_spot;

@@ -84,16 +84,18 @@ static void draw_bars(const drawing *d, const bar_chart *chart)
     cairo_stroke(cairo);
 }
 
+/* As short as can be: labels stand side by side. */
 static void format_value(double value, char text[32])
 {
-    if (value >= 1e6)
+    int exponent = (int)floor(log10(value));
+    if (value >= 1e9 || value < 1e-3)
+        snprintf(text, 32, "%.1fe%d", value / pow(10, exponent), exponent);
+    else if (value >= 1e6)
         snprintf(text, 32, "%.3gM", value / 1e6);
     else if (value >= 1e4)
         snprintf(text, 32, "%.3gk", value / 1e3);
-    else if (value >= 1e-3)
-        snprintf(text, 32, value >= 1 ? "%.0f" : "%.2g", value);
     else
-        snprintf(text, 32, "%.1e", value);
+        snprintf(text, 32, value >= 1 ? "%.0f" : "%.2g", value);
 }
 
 /* The colours' scale, which is the histogram's axis: in stops, and in the map's unit. */
@@ -127,8 +129,8 @@ static void draw_scale(const drawing *d, const bar_chart *chart)
         draw_text(cairo, x, top + BAR + 32, 0.5, text);
     }
     set_grey(cairo, FAINT);
-    draw_text(cairo, chart->left - 24, top + BAR + 17, 1, "stops");
-    draw_text(cairo, chart->left - 24, top + BAR + 32, 1, "lum.");
+    draw_text(cairo, chart->left - 30, top + BAR + 17, 1, "stops");
+    draw_text(cairo, chart->left - 30, top + BAR + 32, 1, "lum.");
 }
 
 void draw_histogram(const drawing *d, double left, double top, double width, double height)

@@ -63,6 +63,7 @@ static json_t *spot_object(const inspect_findings *found)
     json_object_set_new(object, "elevation", json_number(spot->elevation));
     json_object_set_new(object, "solid_angle", json_number(spot->solid_angle));
     json_object_set_new(object, "max_luminance", json_number(spot->luminance));
+    json_object_set_new(object, "edge", json_number(spot->edge));
     json_object_set_new(object, "flux_share", json_number(spot->share));
     json_object_set_new(object, "irradiance_share", json_number(spot->irradiance_share));
     return object;

@@ -38,9 +38,14 @@ static bool is_coarse(const inspect_findings *found)
     return false;
 }
 
+static bool is_within(const inspect_spot *spot, double solid_angle)
+{
+    return spot->edge <= SPOT_FIRST_EDGE && spot->solid_angle <= solid_angle;
+}
+
 static bool looks_like_sun(const inspect_spot *spot)
 {
-    return spot->solid_angle <= SUN_MOST && spot->elevation >= WEAK_ELEVATION;
+    return is_within(spot, SUN_MOST) && spot->elevation >= WEAK_ELEVATION;
 }
 
 /* Rooms and streets at night are dark between the lamps. */
@@ -70,7 +75,7 @@ static inspect_clipping find_clipping(const inspect_findings *found)
 static const char *advise(const inspect_findings *found)
 {
     const inspect_spot *spot = &found->spot;
-    bool is_small = found->has_spot && spot->solid_angle <= SMALL_SPOT;
+    bool is_small = found->has_spot && is_within(spot, SMALL_SPOT);
     if (found->all_flux <= 0)
         return "the map gives no light";
     if (found->bad.nan + found->bad.infinite > 0)

@@ -107,12 +107,12 @@ static void clip_to_faces(cairo_t *cairo)
     cairo_clip(cairo);
 }
 
-/* Around the brightest spot, at least so large that it is seen. What is all around has no middle to be marked. */
+/* Around the brightest spot, at least so large that it is seen. */
 static void mark_spot(const drawing *d)
 {
     enum { FINE = 1 << 20 }; /* texels of a cube that is fine enough to place the mark */
     const inspect_spot *spot = &d->found->spot;
-    if (!d->found->has_spot || spot->solid_angle > 1)
+    if (!d->found->has_spot)
         return;
     size_t texel = face_texel(FINE, spot->direction), face = texel / ((size_t)FINE * FINE);
     double row = (double)(texel / FINE % FINE) / FINE, column = (double)(texel % FINE) / FINE;
@@ -141,9 +141,20 @@ static void draw_all(cairo_t *cairo, const inspect_findings *found, const float 
 
 /* ---- files -------------------------------------------------------------------------------- */
 
-static cairo_status_t write_bytes(void *stream, const unsigned char *bytes, unsigned length)
+/* Cairo has one word for all that may go wrong with a file; the system's is kept here. */
+typedef struct picture_stream {
+    FILE *file;
+    int error; /* of errno; 0 while all is well */
+} picture_stream;
+
+static cairo_status_t write_bytes(void *user, const unsigned char *bytes, unsigned length)
 {
-    return fwrite(bytes, 1, length, stream) == length ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
+    picture_stream *stream = user;
+    errno = 0;
+    if (fwrite(bytes, 1, length, stream->file) == length)
+        return CAIRO_STATUS_SUCCESS;
+    stream->error = errno;
+    return CAIRO_STATUS_WRITE_ERROR;
 }
 
 static bool has_extension(const char *path, const char *extension)
@@ -152,7 +163,8 @@ static bool has_extension(const char *path, const char *extension)
     return dot != NULL && strcasecmp(dot + 1, extension) == 0;
 }
 
-static cairo_status_t draw_to(FILE *stream, const char *path, const inspect_findings *found, const float *cube)
+static cairo_status_t draw_to(picture_stream *stream, const char *path, const inspect_findings *found,
+                              const float *cube)
 {
     bool is_png = has_extension(path, "png");
     cairo_surface_t *surface = is_png ? cairo_image_surface_create(CAIRO_FORMAT_RGB24, WIDTH, HEIGHT)
@@ -182,16 +194,20 @@ int inspect_picture_check(const char *path)
 int inspect_draw(const char *path, const inspect_findings *found, const float *cube)
 {
     char temporary[4096];
-    FILE *stream = output_file_open(path, temporary, sizeof temporary);
-    if (stream == NULL)
+    picture_stream stream = {output_file_open(path, temporary, sizeof temporary), 0};
+    if (stream.file == NULL)
         return message_failure("%s cannot be written: %s; give --out another path", path, strerror(errno));
-    cairo_status_t status = draw_to(stream, path, found, cube);
-    errno = 0;
-    bool good = fclose(stream) == 0 && status == CAIRO_STATUS_SUCCESS;
+    cairo_status_t status = draw_to(&stream, path, found, cube);
+    bool is_closed = fclose(stream.file) == 0;
+    if (!is_closed && stream.error == 0)
+        stream.error = errno;
+    bool good = is_closed && status == CAIRO_STATUS_SUCCESS;
     if (good && rename(temporary, path) == 0)
         return EXIT_CODE_OK;
+    if (good)
+        stream.error = errno;
     int code = message_failure("%s cannot be written: %s; give --out another path", path,
-                               status != CAIRO_STATUS_SUCCESS ? cairo_status_to_string(status) : strerror(errno));
+                               stream.error != 0 ? strerror(stream.error) : cairo_status_to_string(status));
     unlink(temporary);
     return code;
 }

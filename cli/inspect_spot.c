@@ -5,10 +5,17 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* A spot is what is brighter than this times the average. */
 static const double SPOT_CONTRAST = 2;
-static const double SPOT_EDGE = 0.1; /* of its brightest texel's luminance */
+/* A spot ends where luminance falls below these parts of its brightest texel's: the first one at which it is no larger
+ * than SPOT_MOST, or the last one. And it never goes beyond SPOT_REACH of that texel, or the brightest spot of an even
+ * sky would be half the sky. */
+static const double SPOT_EDGES[] = {SPOT_FIRST_EDGE, 0.5, 0.9};
+enum { SPOT_EDGE_COUNT = sizeof SPOT_EDGES / sizeof SPOT_EDGES[0] };
+static const double SPOT_MOST = 0.1;    /* sr: a disc of 20 degrees */
+static const double SPOT_REACH = 0.866; /* cosine of 30 degrees */
 
 static double luminance(const float rgb[3])
 {
@@ -45,42 +52,81 @@ typedef struct spot_search {
     const float *cube;
     uint32_t size;
     double edge;       /* luminance */
+    double middle[3];  /* unit vector, towards the brightest texel */
     uint32_t *waiting; /* [texels] */
     size_t count;
     bool *seen; /* [texels] */
     double light[3], flux, irradiance, area;
 } spot_search;
 
+/* Of unit length, towards the middle of a texel. */
+static void texel_direction(uint32_t size, size_t texel, double direction[3])
+{
+    texel_place at = place_of(size, texel);
+    direction_of(size, at.face, at.row, at.column, direction);
+    double length = sqrt(direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2]);
+    for (int i = 0; i < 3; i++)
+        direction[i] /= length;
+}
+
+static bool is_in_spot(const spot_search *search, size_t texel)
+{
+    double d[3];
+    if (luminance(search->cube + 3 * texel) < search->edge)
+        return false;
+    texel_direction(search->size, texel, d);
+    return d[0] * search->middle[0] + d[1] * search->middle[1] + d[2] * search->middle[2] >= SPOT_REACH;
+}
+
+static void add_light(spot_search *search, size_t texel)
+{
+    texel_place at = place_of(search->size, texel);
+    double direction[3];
+    double flux = face_solid_angle(search->size, at.row, at.column) * luminance(search->cube + 3 * texel);
+    texel_direction(search->size, texel, direction);
+    for (int i = 0; i < 3; i++)
+        search->light[i] += flux * direction[i];
+    search->flux += flux;
+    search->irradiance += flux * fmax(direction[1], 0);
+}
+
+/* Texels of the spot are waiting to be looked around from. Those beside it, over which the texels of the cube spread
+ * the last of its light, count with their light but not with their area. */
 static void visit(spot_search *search, size_t texel)
 {
-    if (search->seen[texel] || luminance(search->cube + 3 * texel) < search->edge)
+    if (search->seen[texel])
         return;
     search->seen[texel] = true;
+    add_light(search, texel);
+    if (!is_in_spot(search, texel))
+        return;
+    texel_place at = place_of(search->size, texel);
+    search->area += face_solid_angle(search->size, at.row, at.column);
     search->waiting[search->count++] = (uint32_t)texel;
 }
 
-static void add_texel(spot_search *search, size_t texel)
+static void grow(spot_search *search, size_t brightest)
 {
-    texel_place at = place_of(search->size, texel);
-    double area = face_solid_angle(search->size, at.row, at.column), direction[3];
-    double flux = area * luminance(search->cube + 3 * texel);
-    direction_of(search->size, at.face, at.row, at.column, direction);
-    double length = sqrt(direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2]);
-    for (int i = 0; i < 3; i++)
-        search->light[i] += flux * direction[i] / length;
-    search->flux += flux;
-    search->irradiance += flux * fmax(direction[1] / length, 0);
-    search->area += area;
-}
-
-static void grow(spot_search *search)
-{
-    for (size_t next = 0; next < search->count; next++) {
-        size_t texel = search->waiting[next];
-        add_texel(search, texel);
+    visit(search, brightest);
+    for (size_t next = 0; next < search->count; next++)
         for (int rows = -1; rows <= 1; rows++)
             for (int columns = -1; columns <= 1; columns++)
-                visit(search, neighbour(search->size, texel, rows, columns));
+                visit(search, neighbour(search->size, search->waiting[next], rows, columns));
+}
+
+/* With an edge that keeps the spot small, if there is one. */
+static void grow_as_needed(spot_search *search, size_t brightest, inspect_spot *spot)
+{
+    double greatest = luminance(search->cube + 3 * brightest);
+    texel_direction(search->size, brightest, search->middle);
+    for (int i = 0; i < SPOT_EDGE_COUNT && (i == 0 || search->area > SPOT_MOST); i++) {
+        spot->edge = SPOT_EDGES[i];
+        memset(search->seen, 0, FACE_COUNT * (size_t)search->size * search->size * sizeof search->seen[0]);
+        memset(search->light, 0, sizeof search->light);
+        search->count = 0;
+        search->flux = search->irradiance = search->area = 0;
+        search->edge = spot->edge * greatest;
+        grow(search, brightest);
     }
 }
 
@@ -96,19 +142,11 @@ static size_t find_brightest(const float *cube, size_t texels)
 static void describe(const spot_search *search, size_t brightest, inspect_findings *found)
 {
     inspect_spot *spot = &found->spot;
-    texel_place at = place_of(search->size, brightest);
     double *d = spot->direction,
            length = sqrt(search->light[0] * search->light[0] + search->light[1] * search->light[1] +
                          search->light[2] * search->light[2]);
-    if (length > 1e-3 * search->flux) { /* else it is all around, and its centre means nothing */
-        for (int i = 0; i < 3; i++)
-            d[i] = search->light[i] / length;
-    } else {
-        direction_of(search->size, at.face, at.row, at.column, d);
-        double scale = 1 / sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-        for (int i = 0; i < 3; i++)
-            d[i] *= scale;
-    }
+    for (int i = 0; i < 3; i++)
+        d[i] = search->light[i] / length;
     const double degrees = 180 / acos(-1);
     spot->azimuth = atan2(d[0], -d[2]) * degrees;
     if (spot->azimuth < 0)
@@ -127,13 +165,12 @@ bool inspect_find_spot(const float *cube, uint32_t size, inspect_findings *found
     found->has_spot = greatest > SPOT_CONTRAST * found->mean_luminance;
     if (!found->has_spot)
         return true;
-    spot_search search = {.cube = cube, .size = size, .edge = SPOT_EDGE * greatest};
+    spot_search search = {.cube = cube, .size = size};
     search.waiting = malloc(texels * sizeof search.waiting[0]);
-    search.seen = calloc(texels, sizeof search.seen[0]);
+    search.seen = malloc(texels * sizeof search.seen[0]);
     bool good = search.waiting != NULL && search.seen != NULL;
     if (good) {
-        visit(&search, brightest);
-        grow(&search);
+        grow_as_needed(&search, brightest, &found->spot);
         describe(&search, brightest, found);
     } else {
         message_failure("no memory to look for the brightest spot of %s", found->name);

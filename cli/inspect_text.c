@@ -32,7 +32,7 @@ static void print_file(const inspect_findings *found)
 static void print_range(const inspect_findings *found)
 {
     print_label("range");
-    printf("luminance %.4g to %.6g", found->least, found->greatest);
+    printf("luminance of %s %.4g to %.6g", found->width > 0 ? "pixels" : "texels", found->least, found->greatest);
     if (found->dark > 0)
         printf(", above 0 from %.4g; %" PRIu64 " pixel%s without light", found->least_positive, found->dark,
                found->dark == 1 ? "" : "s");
@@ -85,8 +85,15 @@ static void print_spot(const inspect_findings *found)
     printf("azimuth %.2f (from -Z over +X), elevation %.2f degrees; direction %.4f %.4f %.4f\n", spot->azimuth,
            spot->elevation, spot->direction[0], spot->direction[1], spot->direction[2]);
     print_label("");
-    printf("%.3g sr, as a disc of %.2g degrees; luminance up to %.6g\n", spot->solid_angle,
-           disc_degrees(spot->solid_angle), spot->luminance);
+    double degrees = disc_degrees(spot->solid_angle);
+    printf("%.3g sr, as a disc of %.*f degrees, down to %.0f %% of its greatest luminance\n", spot->solid_angle,
+           degrees < 1    ? 2
+           : degrees < 10 ? 1
+                          : 0,
+           degrees, 100 * spot->edge);
+    print_label("");
+    printf("that is %.6g, averaged over a texel of a cube of 6 x %" PRIu32 " x %" PRIu32 "\n", spot->luminance,
+           found->cube_size, found->cube_size);
     print_label("");
     printf("gives %.1f %% of all light, %.1f %% of that on a horizontal surface\n", 100 * spot->share,
            100 * spot->irradiance_share);

@@ -5,10 +5,13 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
-enum { LINE_WIDTH = 78 };
+enum { USUAL_WIDTH = 79, GREATEST_WIDTH = 120 };
 
-static atomic_bool line_is_drawn;
+static atomic_uint drawn_width; /* of the line that is on the terminal; 0: there is none */
 
 /* Names and texts of files may hold control characters, ASCII's and U+0080 to U+009F, which a terminal would obey. */
 static void clean(char *text)
@@ -20,20 +23,34 @@ static void clean(char *text)
             *c = c[1] = '?';
 }
 
-/* Padded to full width, so that nothing of a longer line stays behind it. */
+unsigned message_line_width(void)
+{
+    struct winsize size;
+    bool is_known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+    unsigned width = is_known ? size.ws_col - 1U : USUAL_WIDTH;
+    return width < GREATEST_WIDTH ? width : GREATEST_WIDTH;
+}
+
+/* Padded, so that nothing of a longer line stays behind it; but a terminal may have become narrower since. */
+static void draw_line(const char *text, unsigned before, unsigned width, const char *end)
+{
+    int padded = (int)(before < width ? before : width);
+    fprintf(stderr, "\r%-*.*s%s", padded, (int)width, text, end);
+    fflush(stderr);
+}
+
 void message_draw_line(const char *text)
 {
-    atomic_store(&line_is_drawn, true);
-    fprintf(stderr, "\r%-*.*s", LINE_WIDTH, LINE_WIDTH, text);
-    fflush(stderr);
+    unsigned width = message_line_width(), length = (unsigned)strlen(text);
+    unsigned before = atomic_exchange(&drawn_width, length < width ? length : width);
+    draw_line(text, before, width, "");
 }
 
 void message_clear_line(void)
 {
-    if (atomic_exchange(&line_is_drawn, false)) {
-        fprintf(stderr, "\r%*s\r", LINE_WIDTH, "");
-        fflush(stderr);
-    }
+    unsigned before = atomic_exchange(&drawn_width, 0);
+    if (before > 0)
+        draw_line("", before, message_line_width(), "\r");
 }
 
 /* One call of fprintf for the whole line, so that lines of different threads do not mix. */

@@ -19,7 +19,10 @@ void message_note(const char *format, ...) __attribute__((format(printf, 1, 2)))
 
 /* ---- a line that is drawn again and again, such as a progress bar; messages go above it ------------------------ */
 
-/* Text of ASCII; what is longer than a line of a terminal is cut. */
+/* Columns that a drawn line may fill: those of the terminal at this moment, but for the last one, where some wrap. */
+unsigned message_line_width(void);
+
+/* Text of ASCII; what is longer than that is cut. */
 void message_draw_line(const char *text);
 void message_clear_line(void);
 

@@ -24,11 +24,9 @@ bool numbered_path_is_pattern(const char *path)
     return false;
 }
 
-bool numbered_path_parse(const char *pattern, numbered_path *path)
+/* percent: in the pattern, where the number should be. */
+static bool parse_number(const char *pattern, const char *percent, numbered_path *path)
 {
-    const char *percent = strchr(last_part(pattern), '%');
-    if (percent == NULL || strchr(percent + 1, '%') != NULL)
-        return false;
     size_t length = strspn(percent + 1, DIGITS);
     bool has_width = percent[1] == '0' && length >= 2 && length <= 3;
     unsigned digits = has_width ? (unsigned)strtoul(percent + 1, NULL, 10) : 1;
@@ -37,6 +35,36 @@ bool numbered_path_parse(const char *pattern, numbered_path *path)
     *path = (numbered_path){.pattern = pattern, .start = (size_t)(percent - pattern), .digits = digits};
     path->end = path->start + 1 + length + 1;
     return true;
+}
+
+bool numbered_path_parse(const char *pattern, numbered_path *path)
+{
+    const char *percent = strchr(last_part(pattern), '%');
+    return percent != NULL && strchr(percent + 1, '%') == NULL && parse_number(pattern, percent, path);
+}
+
+bool numbered_path_parse_faces(const char *pattern, numbered_path *path)
+{
+    const char *first = strchr(last_part(pattern), '%'), *second = first != NULL ? strchr(first + 1, '%') : NULL;
+    if (second == NULL || strchr(second + 1, '%') != NULL || (first[1] == 's') == (second[1] == 's'))
+        return false;
+    return parse_number(pattern, first[1] == 's' ? second : first, path);
+}
+
+bool numbered_path_makes(const numbered_path *path, const char *part)
+{
+    const char *before = last_part(path->pattern), *after = path->pattern + path->end;
+    size_t length = (size_t)(path->pattern + path->start - before);
+    if (strncmp(part, before, length) != 0)
+        return false;
+    const char *number = part + length;
+    size_t digits = strspn(number, DIGITS);
+    /* The end may begin with digits, too. */
+    size_t after_length = strlen(after), rest = strlen(number);
+    if (rest < after_length || strcmp(number + rest - after_length, after) != 0 || digits < rest - after_length)
+        return false;
+    digits = rest - after_length;
+    return digits == path->digits || (digits > path->digits && number[0] != '0');
 }
 
 bool numbered_path_format(const numbered_path *path, uint64_t number, char *name, size_t size)

@@ -20,6 +20,12 @@ bool numbered_path_is_pattern(const char *path);
  * pattern stays the caller's. */
 bool numbered_path_parse(const char *pattern, numbered_path *path);
 
+/* Is this the last part of a name that some number makes? Folders are not compared. */
+bool numbered_path_makes(const numbered_path *path, const char *last_part);
+
+/* The same with one %s beside the number, which stays in the names as it is. */
+bool numbered_path_parse_faces(const char *pattern, numbered_path *path);
+
 /* False if the name does not fit. */
 bool numbered_path_format(const numbered_path *path, uint64_t number, char *name, size_t size);
 

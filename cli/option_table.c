@@ -85,7 +85,8 @@ const cli_option option_table[] = {
      .argument = "A..B",
      .minimum = 0,
      .maximum = UINT32_MAX,
-     .help = "first and last frame to take: numbers in the files' names where these are given by a number pattern, "
+     .help = "first and last frame to take, or one number for one frame: numbers in the files' names where these are "
+             "given by a number pattern, "
              "else counted from 0",
      .kind = OPTION_RANGE,
      MEMBER(frames),

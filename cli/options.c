@@ -93,7 +93,7 @@ static int bad_value(const cli_option *option, const char *value)
                              option->name, minimum, maximum, value);
     case OPTION_RANGE:
         return message_usage(
-            "--%s takes first..last, such as 10..20, each from %.0f to %.0f and the last not before the "
+            "--%s takes first..last, such as 10..20, or one number, each from %.0f to %.0f and the last not before the "
             "first, not '%s'",
             option->name, minimum, maximum, value);
     case OPTION_TEXT: return message_usage("--%s takes a value that is not empty", option->name);
@@ -121,6 +121,12 @@ static bool parse_range(const char *text, double minimum, double maximum, frame_
 {
     char first[16];
     const char *dots = strstr(text, "..");
+    frame_range one = {.is_given = true};
+    if (dots == NULL && number_parse_whole(text, minimum, maximum, &one.first)) {
+        one.last = one.first;
+        *range = one;
+        return true;
+    }
     if (dots == NULL || (size_t)(dots - text) >= sizeof first)
         return false;
     snprintf(first, sizeof first, "%.*s", (int)(dots - text), text);

@@ -5,7 +5,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -19,13 +18,52 @@ static bool is_same_file(const char *input, const struct stat *output)
            status.st_ino == output->st_ino;
 }
 
-int output_file_check(const char *option, const char *path, const char *const *inputs)
+size_t output_file_folder_length(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash != NULL ? (size_t)(slash - path) + 1 : 0;
+}
+
+bool output_file_is_same_folder(const char *path, const char *other_path)
+{
+    const char *const paths[] = {path, other_path};
+    struct stat status[2];
+    for (int i = 0; i < 2; i++) {
+        char folder[4096 + 2];
+        if (snprintf(folder, sizeof folder, "%.*s.", (int)output_file_folder_length(paths[i]), paths[i]) >=
+                (int)sizeof folder ||
+            stat(folder, &status[i]) != 0)
+            return false;
+    }
+    return status[0].st_dev == status[1].st_dev && status[0].st_ino == status[1].st_ino;
+}
+
+bool output_file_is_same(const char *path, const char *other_path)
+{
+    return strcmp(path, other_path) == 0 ||
+           (strcmp(path + output_file_folder_length(path), other_path + output_file_folder_length(other_path)) == 0 &&
+            output_file_is_same_folder(path, other_path));
+}
+
+/* By what the source reads, and by the paths. */
+static int check_inputs(const char *option, const char *path, helio_source *source, const char *const *inputs)
 {
     struct stat existing;
-    bool exists = stat(path, &existing) == 0;
-    for (; exists && *inputs != NULL; inputs++)
+    if (source != NULL && helio_source_check_output(source, path) != HELIO_OK)
+        return message_failure("%s; give --%s another path", helio_last_error(), option);
+    for (bool exists = stat(path, &existing) == 0; exists && *inputs != NULL; inputs++)
         if (is_same_file(*inputs, &existing))
             return message_failure("%s would replace an input; give --%s another path", path, option);
+    return EXIT_CODE_OK;
+}
+
+int output_file_check(const char *option, const char *path, helio_source *source, const char *const *inputs)
+{
+    int code = check_inputs(option, path, source, inputs);
+    if (code != EXIT_CODE_OK)
+        return code;
+    struct stat existing;
+    bool exists = stat(path, &existing) == 0;
     if (!exists && errno != ENOENT)
         return message_failure("%s cannot be written: %s; give --%s another path", path, strerror(errno), option);
     if (exists && !S_ISREG(existing.st_mode))

@@ -3,11 +3,21 @@
 #ifndef HELIOSTAT_CLI_OUTPUT_FILE_H
 #define HELIOSTAT_CLI_OUTPUT_FILE_H
 
+#include <heliostat/source.h>
+
 #include <stdio.h>
 
-/* Can the file that --option names be written, without replacing an input? inputs: paths, of which some may be empty,
- * ended by NULL. Returns EXIT_CODE_OK, or EXIT_CODE_FAILED after one sentence on stderr. */
-int output_file_check(const char *option, const char *path, const char *const *inputs);
+/* Can the file that --option names be written, without replacing an input? Those are all files of the source, which may
+ * be NULL, and inputs: paths, of which some may be empty, ended by NULL. Returns EXIT_CODE_OK, or EXIT_CODE_FAILED
+ * after one sentence on stderr. */
+int output_file_check(const char *option, const char *path, helio_source *source, const char *const *inputs);
+
+/* Is it the same name in the same folder, however the folder is written? */
+bool output_file_is_same(const char *path, const char *other_path);
+bool output_file_is_same_folder(const char *path, const char *other_path);
+
+/* Length of the part up to the last slash, the slash included. */
+size_t output_file_folder_length(const char *path);
 
 /* Opens a new file beside path, to be renamed when it is complete; its name stays within temporary. NULL, with errno,
  * if that cannot be. */

@@ -66,12 +66,50 @@ static int set_out(render_plan *plan, const char *out)
     return EXIT_CODE_OK;
 }
 
+/* What this build can write, such as ".exr, .pfm and .png". */
+static const char *list_endings(bool is_video, char text[64])
+{
+    static const char *const kinds[2][4] = {{"x.exr", "x.pfm", "x.png", NULL}, {"x.mp4", "x.mov", "x.mkv", "x.webm"}};
+    const helio_video_write_desc desc = {.width = 64, .height = 64};
+    const char *endings[4];
+    size_t count = 0, length = 0;
+    for (size_t i = 0; i < 4 && kinds[is_video][i] != NULL; i++)
+        if ((is_video ? helio_video_check_path(kinds[1][i], &desc) : helio_picture_check_path(kinds[0][i])) == HELIO_OK)
+            endings[count++] = kinds[is_video][i] + 1;
+    text[0] = 0;
+    for (size_t i = 0; i < count; i++)
+        length += (size_t)snprintf(text + length, 64 - length, "%s%s",
+                                   i == 0          ? ""
+                                   : i + 1 < count ? ", "
+                                                   : " or ",
+                                   endings[i]);
+    return text;
+}
+
+/* The library knows why a picture cannot be written, but not that a video would do. */
+static int fail_with_ending(const render_plan *plan, const char *out, helio_status status)
+{
+    char pictures[64], videos[64];
+    if (status != HELIO_ERR_ARGUMENT)
+        return message_usage("--out: %s", helio_last_error());
+    list_endings(false, pictures);
+    list_endings(true, videos);
+    if (plan->sink == SINK_NUMBERED && helio_video_has_extension(out))
+        return message_usage("--out %s: a video holds all frames and takes no number; give it a name without %%, or "
+                             "numbered pictures one that ends in %s",
+                             out, pictures);
+    bool has_videos = plan->sink != SINK_NUMBERED && videos[0] != 0;
+    return message_usage("--out %s: its ending tells no kind that this build writes; a picture ends in %s%s%s", out,
+                         pictures, has_videos ? ", a video in " : "", has_videos ? videos : "");
+}
+
 static int check_files(const render_plan *plan)
 {
     const cli_options *options = plan->options;
     const char *out = options->out != NULL ? plan->out : PICTURE_OUT;
-    if (plan->sink != SINK_VIDEO && helio_picture_check_path(out) != HELIO_OK)
-        return message_usage("--out: %s", helio_last_error());
+    helio_status status = plan->sink != SINK_VIDEO ? helio_picture_check_path(out) : HELIO_OK;
+    if (status != HELIO_OK)
+        return fail_with_ending(plan, out, status);
     if (options->aovs && !has_extension(out, "exr"))
         return message_usage("--aovs writes layers, which only EXR holds; give --out a name that ends in .exr, not %s",
                              out);
@@ -137,29 +175,12 @@ static int choose_out(render_plan *plan, bool is_dynamic)
     if (plan->sink != SINK_PICTURE || !is_dynamic || is_one_frame(plan))
         return EXIT_CODE_OK;
     const char *dot = strrchr(plan->out, '.');
+    size_t folder = output_file_folder_length(plan->out);
+    bool has_percent = strchr(plan->out + folder, '%') != NULL; /* which would not go with another one */
     return message_usage("--out %s is one picture, but %s has many frames; give --out a name with %%04d, as in "
-                         "%.*s_%%04d%s, a folder or a video, or take one frame by --frames N..N",
-                         plan->out, plan->light.specification, (int)(dot - plan->out), plan->out, dot);
-}
-
-/* Length of the part up to the last slash, the slash included. */
-static size_t folder_length(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash != NULL ? (size_t)(slash - path) + 1 : 0;
-}
-
-static bool is_same_folder(const char *path, const char *other_path)
-{
-    const char *paths[] = {path, other_path};
-    struct stat status[2];
-    for (int i = 0; i < 2; i++) {
-        char folder[SINK_PATH_SIZE + 2];
-        if (snprintf(folder, sizeof folder, "%.*s.", (int)folder_length(paths[i]), paths[i]) >= (int)sizeof folder ||
-            stat(folder, &status[i]) != 0)
-            return false;
-    }
-    return status[0].st_dev == status[1].st_dev && status[0].st_ino == status[1].st_ino;
+                         "%.*s%s_%%04d%s, a folder or a video, or take one frame by --frames N..N",
+                         plan->out, plan->light.specification, has_percent ? (int)folder : (int)(dot - plan->out),
+                         plan->out, has_percent ? "frame" : "", dot);
 }
 
 /* Pictures that a glob finds may be inputs that are still to be read. */
@@ -171,9 +192,10 @@ static int check_glob(const render_plan *plan)
     if (plan->light.kind != HELIO_SOURCE_SEQUENCE || plan->sink != SINK_NUMBERED ||
         !numbered_path_parse(plan->out, &names) || !numbered_path_format(&names, 0, name, sizeof name))
         return EXIT_CODE_OK;
-    bool is_found = fnmatch(glob, name, FNM_PATHNAME) == 0 ||
-                    (is_same_folder(glob, name) &&
-                     fnmatch(glob + folder_length(glob), name + folder_length(name), FNM_PATHNAME) == 0);
+    bool is_found =
+        fnmatch(glob, name, FNM_PATHNAME) == 0 ||
+        (output_file_is_same_folder(glob, name) &&
+         fnmatch(glob + output_file_folder_length(glob), name + output_file_folder_length(name), FNM_PATHNAME) == 0);
     if (!is_found)
         return EXIT_CODE_OK;
     return message_usage("--out %s makes names that --env %s matches, so inputs might be replaced; give --out another "
@@ -181,15 +203,15 @@ static int check_glob(const render_plan *plan)
                          plan->out, glob);
 }
 
-static int check_sink(const render_plan *plan, const char *const *inputs)
+static int check_sink(const render_plan *plan, helio_source *source, const char *const *inputs)
 {
     char name[SINK_PATH_SIZE];
     numbered_path names;
     if (plan->sink != SINK_NUMBERED)
-        return output_file_check("out", plan->out, inputs);
+        return output_file_check("out", plan->out, source, inputs);
     if (!numbered_path_parse(plan->out, &names) || !numbered_path_format(&names, UINT32_MAX, name, sizeof name))
         return message_usage("--out %s makes names that are too long", plan->out);
-    return output_file_check("out", name, inputs);
+    return output_file_check("out", name, source, inputs);
 }
 
 /* Only the last folder: a path that is mistyped should not become a tree. */
@@ -204,18 +226,43 @@ static int make_folder(render_plan *plan)
     return message_failure("the folder %s cannot be made: %s; give --out another path", folder, strerror(errno));
 }
 
-int output_plan_settle(render_plan *plan, bool is_dynamic)
+/* What goes beside the frames must be none of them. */
+static int check_beside(const render_plan *plan, const char *option, const char *path, helio_source *source)
 {
-    const cli_options *options = plan->options;
-    const char *const inputs[] = {plan->light.specification, plan->mesh, NULL};
-    int code = choose_out(plan, is_dynamic);
+    const char *const inputs[] = {plan->mesh, NULL};
+    numbered_path names;
+    if (path == NULL)
+        return EXIT_CODE_OK;
+    bool is_frame = output_file_is_same(plan->out, path);
+    if (plan->sink == SINK_NUMBERED && numbered_path_parse(plan->out, &names))
+        is_frame = output_file_is_same_folder(plan->out, path) &&
+                   numbered_path_makes(&names, path + output_file_folder_length(path));
+    if (is_frame)
+        return message_usage("--%s %s is the name of a picture or video that --out %s makes; give --%s another path",
+                             option, path, plan->out, option);
+    return output_file_check(option, path, source, inputs);
+}
+
+static int check_reports(const render_plan *plan, helio_source *source)
+{
+    const char *stats = plan->options->stats, *sheet = plan->options->contact_sheet;
+    int code = check_beside(plan, "stats", stats, source);
+    if (code == EXIT_CODE_OK)
+        code = check_beside(plan, "contact-sheet", sheet, source);
+    if (code == EXIT_CODE_OK && stats != NULL && sheet != NULL && output_file_is_same(stats, sheet))
+        code = message_usage("--stats and --contact-sheet both name %s; give two files", sheet);
+    return code;
+}
+
+int output_plan_settle(render_plan *plan, helio_source *source)
+{
+    const char *const inputs[] = {plan->mesh, NULL};
+    int code = choose_out(plan, helio_source_get_info(source).is_dynamic);
     if (code == EXIT_CODE_OK)
         code = check_glob(plan);
-    if (code == EXIT_CODE_OK && options->stats != NULL)
-        code = output_file_check("stats", options->stats, inputs);
-    if (code == EXIT_CODE_OK && options->contact_sheet != NULL)
-        code = output_file_check("contact-sheet", options->contact_sheet, inputs);
+    if (code == EXIT_CODE_OK)
+        code = check_reports(plan, source);
     if (code == EXIT_CODE_OK)
         code = make_folder(plan);
-    return code == EXIT_CODE_OK ? check_sink(plan, inputs) : code;
+    return code == EXIT_CODE_OK ? check_sink(plan, source, inputs) : code;
 }

@@ -10,7 +10,7 @@ int output_plan_check(render_plan *plan);
 
 /* Decides what is written where --out was not given, looks at what is there already, and makes the folder that --out
  * names. */
-int output_plan_settle(render_plan *plan, bool is_dynamic);
+int output_plan_settle(render_plan *plan, helio_source *source);
 
 /* Tells of options that change nothing. */
 void output_plan_warn(const render_plan *plan);

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { LINE_SIZE = 128, BAR_WIDTH = 20 };
+enum { LINE_SIZE = 192, BAR_WIDTH = 20, LEAST_BAR = 4 };
 static const double REFRESH_MS = 100;
 
 static void format_time(double milliseconds, char text[16])
@@ -31,43 +31,78 @@ static void format_rate(double per_second, char text[32])
     snprintf(text, 32, "%.3g %spixels/s", fmin(per_second / scale, 999999), millions ? "M" : thousands ? "k" : "");
 }
 
-static void format_bar(double done, char bar[BAR_WIDTH + 1])
+/* " [###...]", as long as it may be beside the rest of the line; "" where it would be too short to tell much. */
+static void format_bar(double done, size_t rest, char bar[BAR_WIDTH + 4])
 {
-    memset(bar, '.', BAR_WIDTH);
-    memset(bar, '#', (size_t)(done * BAR_WIDTH));
-    bar[BAR_WIDTH] = 0;
+    size_t columns = message_line_width(), around = strlen(" []");
+    size_t width = columns > rest + around ? columns - rest - around : 0;
+    width = width < BAR_WIDTH ? width : BAR_WIDTH;
+    bar[0] = 0;
+    if (width < LEAST_BAR)
+        return;
+    strcpy(bar, " [");
+    memset(bar + 2, '.', width);
+    memset(bar + 2, '#', (size_t)(done * (double)width));
+    strcpy(bar + 2 + width, "]");
 }
 
-static void format_picture(const progress_bar *progress, double elapsed, double done, char line[LINE_SIZE])
+/* What a line says: at a narrow terminal the bar goes first, then what is least needed, which comes last. */
+typedef struct progress_line {
+    char head[64], left[32], speed[48], past[32];
+} progress_line;
+
+static void join(const progress_line *line, double done, char text[LINE_SIZE])
 {
-    char bar[BAR_WIDTH + 1], past[16], left[16] = "?", rate[32];
-    format_bar(done, bar);
+    const char *const parts[] = {line->left, line->speed, line->past};
+    size_t columns = message_line_width(), length = strlen(line->head), count = 0;
+    for (; count < 3 && length + strlen(parts[count]) <= columns; count++)
+        length += strlen(parts[count]);
+    char bar[BAR_WIDTH + 4] = "";
+    if (done >= 0)
+        format_bar(done, length, bar);
+    snprintf(text, LINE_SIZE, "%s%s", line->head, bar);
+    for (size_t i = 0; i < count; i++)
+        strcat(text, parts[i]);
+}
+
+static void format_picture(const progress_bar *progress, double elapsed, double done, char text[LINE_SIZE])
+{
+    progress_line line;
+    char past[16], left[16] = "?", rate[32];
     format_time(elapsed, past);
     format_rate(done * progress->pixels / elapsed * 1e3, rate);
     if (done > 0)
         format_time(elapsed / done - elapsed, left);
-    snprintf(line, LINE_SIZE, "rendering [%s] %3.0f %%  %s elapsed, %s left, %s", bar, floor(done * 100), past, left,
-             rate);
+    snprintf(line.head, sizeof line.head, "rendering %.0f %%", floor(done * 100));
+    snprintf(line.left, sizeof line.left, " %s left", left);
+    snprintf(line.speed, sizeof line.speed, ", %s", rate);
+    snprintf(line.past, sizeof line.past, ", %s elapsed", past);
+    join(&line, done, text);
 }
 
 /* Frames that were there already take no time, so speed is that of the others. */
-static void format_sequence(const progress_bar *progress, double elapsed, double done, char line[LINE_SIZE])
+static void format_sequence(const progress_bar *progress, double elapsed, double done, char text[LINE_SIZE])
 {
-    char bar[BAR_WIDTH + 1], past[16], left[16] = "?";
+    progress_line line = {.left = ""};
+    char past[16], left[16] = "?";
     double rendered = (double)progress->rendered + done, passed = (double)progress->passed + done;
-    double fps = rendered / elapsed * 1e3;
+    double fps = rendered / elapsed * 1e3, total = (double)progress->total;
     format_time(elapsed, past);
     if (progress->total == 0) {
-        snprintf(line, LINE_SIZE, "frame %" PRIu64 ", %.3g frames/s, %s elapsed", progress->passed + 1, fps, past);
+        snprintf(line.head, sizeof line.head, "frame %" PRIu64, progress->passed + 1);
+        snprintf(line.speed, sizeof line.speed, ", %.3g frames/s", fps);
+        snprintf(line.past, sizeof line.past, ", %s elapsed", past);
+        join(&line, -1, text);
         return;
     }
-    double total = (double)progress->total;
-    format_bar(fmin(passed / total, 1), bar);
     if (fps > 0)
         format_time(fmax(total - passed, 0) / fps * 1e3, left);
     uint64_t number = progress->passed < progress->total ? progress->passed + 1 : progress->total;
-    snprintf(line, LINE_SIZE, "frame %" PRIu64 " of %" PRIu64 " [%s] %.3g frames/s, %s left", number, progress->total,
-             bar, fps, left);
+    snprintf(line.head, sizeof line.head, "frame %" PRIu64 " of %" PRIu64, number, progress->total);
+    snprintf(line.left, sizeof line.left, " %.3g frames/s", fps);
+    snprintf(line.speed, sizeof line.speed, ", %s left", left);
+    line.past[0] = 0;
+    join(&line, fmin(passed / total, 1), text);
 }
 
 static void draw(const progress_bar *progress, double elapsed, double done)

@@ -129,7 +129,7 @@ int render_job_open(render_job *job, const cli_options *options)
     if (code == EXIT_CODE_OK)
         code = run_steps(job, sources, sizeof sources / sizeof sources[0]);
     if (code == EXIT_CODE_OK)
-        code = render_plan_settle(&job->plan, job->source_info.is_dynamic);
+        code = render_plan_settle(&job->plan, job->source);
     return code == EXIT_CODE_OK ? run_steps(job, scenes, sizeof scenes / sizeof scenes[0]) : code;
 }
 

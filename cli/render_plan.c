@@ -124,8 +124,9 @@ static void warn_of_idle_source(const render_plan *plan)
         message_warning("--layout changes nothing with --env %s", source);
     if (plan->source.transfer != HELIO_TRANSFER_AUTO && !is_coded)
         message_warning("--transfer changes nothing with --env %s, which is no video", source);
-    if (options->on_missing[1] != 't' && kind != HELIO_SOURCE_SEQUENCE)
-        message_warning("--on-missing changes nothing with --env %s, which is no sequence of files", source);
+    if (options->on_missing[1] != 't' && kind != HELIO_SOURCE_SEQUENCE && !is_coded)
+        message_warning("--on-missing changes nothing with --env %s, which is no sequence of files and no video",
+                        source);
     if (options->day_frames != USUAL_DAY_FRAMES && kind != HELIO_SOURCE_SKY_DAY)
         message_warning("--day-frames changes nothing with --env %s; it is for sky:day", source);
 }
@@ -147,9 +148,10 @@ int render_plan_make(render_plan *plan, const cli_options *options)
     return code;
 }
 
-int render_plan_settle(render_plan *plan, bool is_dynamic)
+int render_plan_settle(render_plan *plan, helio_source *source)
 {
-    int code = output_plan_settle(plan, is_dynamic);
+    plan->light.kind = helio_source_get_info(source).kind;
+    int code = output_plan_settle(plan, source);
     if (code != EXIT_CODE_OK)
         return code;
     warn_of_idle_sampling(plan);

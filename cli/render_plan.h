@@ -32,8 +32,9 @@ typedef struct render_plan {
  * sentence on stderr. */
 int render_plan_make(render_plan *plan, const cli_options *options);
 
-/* What can only be told once the source is open: does what comes fit --out? */
-int render_plan_settle(render_plan *plan, bool is_dynamic);
+/* What can only be told once the source is open: does what comes fit --out, and does no file that it reads get
+ * replaced? */
+int render_plan_settle(render_plan *plan, helio_source *source);
 
 /* Removes the folder that was made, if nothing came into it. */
 void render_plan_release(const render_plan *plan);

@@ -159,10 +159,10 @@ static bool take_finished(render_sequence *sequence, const helio_source_frame *f
 static bool check_name(render_sequence *sequence, const helio_source_frame *frame)
 {
     char name[SINK_PATH_SIZE];
-    const char *const inputs[] = {frame->name, sequence->job->plan.mesh, NULL};
+    const char *const inputs[] = {sequence->job->plan.mesh, NULL};
     if (sequence->job->plan.sink != SINK_NUMBERED || !frame_sink_name(&sequence->sink, frame->index, name))
         return true;
-    return check_code(sequence, output_file_check("out", name, inputs));
+    return check_code(sequence, output_file_check("out", name, sequence->job->source, inputs));
 }
 
 static bool render_frame(render_sequence *sequence, const helio_source_frame *frame, stats_frame *stats)

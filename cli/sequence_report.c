@@ -28,6 +28,9 @@ static int tell_failure(const render_sequence *sequence, int signal)
     int code = signal != 0 ? EXIT_CODE_SIGNAL + signal : EXIT_CODE_FAILED;
     if (sequence->sink.written + sequence->skipped > 0)
         message_failure("%s%s%s written to %s", reason, reason[0] != 0 ? "; " : "", frames, job->plan.out);
+    else if (sequence->sink.lost > 0)
+        message_failure("%s; nothing is kept of its %" PRIu64 " frame%s", sequence->sink.error, sequence->sink.lost,
+                        sequence->sink.lost == 1 ? "" : "s");
     else if (signal != 0)
         message_failure("stopped; nothing was written to %s", job->plan.out);
     else if (reason[0] != 0)
@@ -55,15 +58,32 @@ static int write_stats(const render_sequence *sequence)
     return stats_write(options->stats, &sequence->stats, &summary);
 }
 
+/* The frames are there, whatever becomes of the sheet. */
+static int write_sheet(const render_sequence *sequence)
+{
+    const render_job *job = sequence->job;
+    const char *path = job->plan.options->contact_sheet;
+    helio_status status = contact_sheet_write(&sequence->sheet, job->context, path);
+    if (status == HELIO_OK)
+        return EXIT_CODE_OK;
+    char frames[64];
+    describe_frames(sequence, frames);
+    if (status == HELIO_ERR_MEMORY)
+        return message_failure("no memory for the contact sheet %s; %s written to %s", path, frames, job->plan.out);
+    return message_failure("%s; %s written to %s", helio_last_error(), frames, job->plan.out);
+}
+
 /* What goes beside the frames; of a sequence that ended early too, if there are frames. */
 static int write_reports(const render_sequence *sequence)
 {
     const cli_options *options = sequence->job->plan.options;
     int code = EXIT_CODE_OK;
     if (options->contact_sheet != NULL && sequence->sheet.count > 0)
-        code = contact_sheet_write(&sequence->sheet, sequence->job->context, options->contact_sheet);
-    if (options->stats != NULL && code == EXIT_CODE_OK)
-        code = write_stats(sequence);
+        code = write_sheet(sequence);
+    if (options->stats != NULL) {
+        int stats = write_stats(sequence);
+        code = code == EXIT_CODE_OK ? stats : code;
+    }
     return code;
 }
 

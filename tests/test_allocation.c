@@ -636,6 +636,61 @@ static void read_pictures(void **state)
 #endif
 }
 
+/* ---- skies and sources ------------------------------------------------------------------------------ */
+
+static helio_status create_sky(world *w)
+{
+    helio_sky *sky = (helio_sky *)w;
+    helio_status status = helio_sky_create(w->context, 8, &sky);
+    assert_true((status == HELIO_OK) == (sky != NULL));
+    helio_sky_destroy(sky);
+    return status;
+}
+
+static void skies(void **state)
+{
+    (void)state;
+    refuse_in_all_hosts(NULL, create_sky, 2);
+}
+
+/* To its end, where a failure leaves it, too. */
+static helio_status read_source(world *w)
+{
+    helio_source *source = (helio_source *)w;
+    helio_status status = helio_source_open(w->context, w->path, NULL, &source);
+    assert_true((status == HELIO_OK) == (source != NULL));
+    helio_source_frame frame = {.rgb = pixels};
+    while (status == HELIO_OK && frame.rgb != NULL)
+        status = helio_source_next(source, &frame);
+    if (source != NULL && status != HELIO_OK) {
+        char sentence[512];
+        snprintf(sentence, sizeof sentence, "%s", helio_last_error());
+        assert_ok(helio_source_next(source, &frame)); /* it stays at its end */
+        assert_null(frame.rgb);
+        assert_string_equal(helio_last_error(), sentence);
+    }
+    helio_source_close(source);
+    return status;
+}
+
+static void prepare_sequence(world *w)
+{
+    for (int i = 0; i < 3; i++) {
+        char name[16];
+        snprintf(name, sizeof name, "s%d.pfm", i);
+        name_file(w, name);
+        write_picture(w);
+    }
+    name_file(w, "s%d.pfm");
+}
+
+static void sources(void **state)
+{
+    (void)state;
+    refuse_in_all_hosts(prepare_pfm, read_source, 4);
+    refuse_in_all_hosts(prepare_sequence, read_source, 6);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -656,6 +711,8 @@ int main(void)
 #endif
         cmocka_unit_test(written_pictures),
         cmocka_unit_test(read_pictures),
+        cmocka_unit_test(skies),
+        cmocka_unit_test(sources),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

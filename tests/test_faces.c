@@ -82,7 +82,12 @@ static void all_spellings_are_understood(void **state)
         {"sky-right.pfm", "sky-left.pfm", "sky-up.pfm", "sky-down.pfm", "sky-front.pfm", "sky-back.pfm"},
         {"+x.pfm", "-x.pfm", "+y.pfm", "-y.pfm", "+z.pfm", "-z.pfm"},
         {"sky+X.pfm", "sky-X.pfm", "sky+Y.pfm", "sky-Y.pfm", "sky+Z.pfm", "sky-Z.pfm"},
-        {"x+.pfm", "x-.pfm", "y+.pfm", "y-.pfm", "z+.pfm", "z-.pfm"}};
+        {"x+.pfm", "x-.pfm", "y+.pfm", "y-.pfm", "z+.pfm", "z-.pfm"},
+        {"dm_rt.pfm", "dm_lf.pfm", "dm_up.pfm", "dm_dn.pfm", "dm_ft.pfm", "dm_bk.pfm"},
+        {"pos_x.pfm", "neg_x.pfm", "pos_y.pfm", "neg_y.pfm", "pos_z.pfm", "neg_z.pfm"},
+        {"s-positive_x.pfm", "s-negative_x.pfm", "s-positive_y.pfm", "s-negative_y.pfm", "s-positive_z.pfm",
+         "s-negative_z.pfm"},
+        {"xp.pfm", "xn.pfm", "yp.pfm", "yn.pfm", "zp.pfm", "zn.pfm"}};
     for (size_t i = 0; i < sizeof spellings / sizeof *spellings; i++) {
         make_directory(folder);
         write_six(spellings[i], 3);
@@ -106,6 +111,28 @@ static void patterns_name_six_files_among_others(void **state)
     expect_strip("b_%s.pfm", HELIO_LAYOUT_AUTO, 4);
     expect_strip("%s-c.pfm", HELIO_LAYOUT_AUTO, 1);
     expect_strip("b_nz.pfm", HELIO_LAYOUT_FACES, 4);
+    remove_directory(folder);
+}
+
+/* Six pictures that are all numbered, and nothing else that is one. */
+static void folders_may_have_numbers_alone(void **state)
+{
+    (void)state;
+    make_directory(folder);
+    write_six((const char *const[6]){"s_0.pfm", "s_1.pfm", "s_2.pfm", "s_3.pfm", "s_4.pfm", "s_5.pfm"}, 2);
+    expect_strip("", HELIO_LAYOUT_AUTO, 2);
+    char path[TEST_PATH_SIZE];
+    join(path, "notes.txt");
+    FILE *notes = fopen(path, "w");
+    assert_non_null(notes);
+    assert_int_equal(fclose(notes), 0);
+    expect_strip("", HELIO_LAYOUT_AUTO, 2);
+    write_picture("s_6.pfm", 2, 2, 1);
+    expect_failure("", HELIO_LAYOUT_AUTO, HELIO_ERR_IO, (const char *const[2]){"px, posx", "/sky_%s.exr"});
+    expect_strip("s_%s.pfm", HELIO_LAYOUT_AUTO, 2);
+    join(path, "s_5.pfm");
+    assert_int_equal(remove(path), 0);
+    expect_failure("", HELIO_LAYOUT_AUTO, HELIO_ERR_IO, (const char *const[2]){"nz, negz", "/sky_%s.exr"});
     remove_directory(folder);
 }
 
@@ -205,6 +232,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_spellings_are_understood),
         cmocka_unit_test(patterns_name_six_files_among_others),
+        cmocka_unit_test(folders_may_have_numbers_alone),
         cmocka_unit_test(a_single_file_is_itself_unless_faces_are_asked_for),
         cmocka_unit_test(mistakes_name_the_file),
         cmocka_unit_test(bad_pixels_of_all_faces_are_counted),

@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -213,6 +214,28 @@ static void test_names_with_other_numbers_are_refused(void **state)
     assert_int_equal(count_files("."), 1);
 }
 
+static void test_endings_of_pictures_and_videos_are_listed(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER | NEEDS_PNG);
+    fails(SMALL "--env sky:day --out x.gif", 2, ".png");
+    fails(SMALL "--env sky:day --out x%d.gif", 2, ".png");
+    assert_null(strstr(program_err, ".mp4"));
+    const helio_video_write_desc desc = {.width = 64, .height = 48};
+    if (helio_video_check_path("x.mkv", &desc) != HELIO_OK)
+        return;
+    fails(SMALL "--env sky:day --out x.gif", 2, ".mkv");
+    fails(SMALL "--env sky:day --out x%04d.mkv", 2, "takes no number");
+}
+
+/* What is advised for one name must be a name that render takes. */
+static void test_advice_for_a_name_with_a_percent_sign_is_sound(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER | NEEDS_PNG);
+    fails(SMALL "--env sky:day --out s/%s.png", 2, "as in s/frame_%04d.png,");
+}
+
 static void test_inputs_are_never_replaced(void **state)
 {
     (void)state;
@@ -223,6 +246,100 @@ static void test_inputs_are_never_replaced(void **state)
     fails(SMALL "--env *.pfm --out out_%04d.pfm", 2, "*.pfm");
     fails(SMALL "--env ./*.pfm --out ../work/out_%04d.pfm", 2, "*.pfm");
     assert_int_equal(count_files("."), before);
+}
+
+/* Maps as PNG, numbered as those of write_maps(). */
+static void write_png_maps(void)
+{
+    succeeds(SMALL "--env in_%04d.pfm --out m%d.png");
+}
+
+static void test_no_output_replaces_a_map_of_the_sequence(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER | NEEDS_PNG);
+    write_maps(0, 2);
+    write_png_maps();
+    assert_int_equal(mkdir("q", 0777), 0);
+    assert_int_equal(link("in_0002.pfm", "q/hard"), 0);
+    assert_int_equal(symlink("../in_0002.pfm", "q/soft"), 0);
+    size_t before = count_files(".");
+    static const char *const lines[] = {
+        SMALL "--env in_%04d.pfm --out out_%04d.pfm --stats in_0002.pfm",
+        SMALL "--env in_%04d.pfm --frames 0..0 --out out_%04d.pfm --stats q/../in_0002.pfm",
+        SMALL "--env in_*.pfm --out out_%04d.pfm --stats ./in_0002.pfm",
+        SMALL "--env in_*.pfm --out out_%04d.pfm --stats q/hard",
+        SMALL "--env in_*.pfm --out out_%04d.pfm --stats q/soft",
+        SMALL "--env in_%04d.pfm --frames 0..0 --out in_0001.pfm",
+        SMALL "--env in_%04d.pfm --frames 0..7 --on-missing skip --out out_%04d.pfm --stats in_0005.pfm",
+        SMALL "--env m%d.png --out out_%04d.pfm --contact-sheet m1.png",
+        "inspect in_%04d.pfm --frames 0..0 --json in_0002.pfm",
+        "inspect m%d.png --frames 0..0 --json m2.png",
+        "inspect in_*.pfm --json in_0001.pfm",
+        "convert in_%04d.pfm --frames 0..0 --out in_0001.pfm",
+        "convert m%d.png --frames 0..0 --out m1.png",
+        "convert m*.png --frames 0..0 --out m1.png",
+    };
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++)
+        fails(lines[i], 1, "replace an input");
+    assert_int_equal(count_files("."), before);
+    for (unsigned i = 0; i < 3; i++) {
+        write_map("again.pfm", 1, 1 + (float)i, 1 + (float)i);
+        assert_true(same_bytes("again.pfm", number_name("in_%04d.pfm", i)));
+    }
+}
+
+/* a1.pfm is frame 1, and what frame 1 makes would be frame 11. */
+static void test_frame_is_not_written_over_a_later_map(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+    write_map("a1.pfm", 1, 1, 1);
+    write_map("a11.pfm", 1, 2, 2);
+    assert_int_equal(run_program(SMALL "--env a%d.pfm --on-missing skip --out a1%d.pfm"), 1);
+    says("a11.pfm would replace an input");
+    write_map("again.pfm", 1, 2, 2);
+    assert_true(same_bytes("again.pfm", "a11.pfm"));
+}
+
+static void test_six_faces_are_inputs_too(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER | NEEDS_EXR);
+    succeeds("convert constant:1 --to faces --env-size 8 --out six/");
+    fails("inspect six --json six/ny.exr", 1, "replace an input");
+    fails(SMALL "--env six --out out.pfm --stats six/px.exr", 1, "replace an input");
+    fails(SMALL "--env six/%s.exr --out six/pz.exr", 1, "replace an input");
+    fails("convert six --to faces --out six/./%s.exr", 1, "replace an input");
+    succeeds(SMALL "--env six --out six/lit.pfm --stats six/lit.json");
+    succeeds(SMALL "--env six --out six/lit.pfm --stats six/lit.json");
+}
+
+static void test_reports_are_no_frames_of_the_run(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER | NEEDS_PNG);
+    write_maps(0, 11);
+    assert_int_equal(mkdir("sd", 0777), 0);
+    size_t before = count_files(".");
+    static const char *const lines[] = {
+        "--out x_%d.png --contact-sheet x_1.png",
+        "--out x_%d.png --contact-sheet ./x_11.png",
+        "--out sd/ --stats sd/heliostat_0001.png",
+        "--out sd/../x_%02d.png --stats x_07.png",
+        "--contact-sheet heliostat_0003.png",
+        "--frames 0..0 --out x.png --contact-sheet ./x.png",
+        "--out x_%d.png --stats sd/../y.png --contact-sheet y.png",
+    };
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        char line[512];
+        snprintf(line, sizeof line, SMALL "--env in_%%04d.pfm %s", lines[i]);
+        fails(line, 2, "--");
+    }
+    assert_int_equal(count_files("."), before);
+    assert_int_equal(count_files("sd"), 0);
+    succeeds(SMALL "--env in_%04d.pfm --frames 1 --out x_%02d.png --stats x_1.png --contact-sheet x_001.png");
+    assert_int_equal(count_files("."), before + 3);
 }
 
 /* ---- which frames -------------------------------------------------------------------------- */
@@ -236,12 +353,32 @@ static void test_range_takes_these_frames_only(void **state)
     says("3 of 3 frames");
     assert_int_equal(count_files("."), 1 + 10 + 3);
     assert_true(exists("out_0004.pfm") && exists("out_0006.pfm"));
-    static const char *const ranges[] = {"4", "4..", "..6", "6..4", "4...6", "a..b", "-1..3", "0..4294967296"};
+    static const char *const ranges[] = {"4..", "..6", "6..4", "4...6", "a..b", "-1..3", "0..4294967296"};
     for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; i++) {
         char line[128];
         snprintf(line, sizeof line, "render --frames=%s", ranges[i]);
         fails(line, 2, ranges[i]);
     }
+}
+
+static void test_one_number_takes_one_frame(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+    write_maps(6, 8);
+    succeeds(FURNACE "--env in_%04d.pfm --frames 7 --out a.pfm");
+    check_picture("a.pfm", 8, 1e-2F);
+    fails(SMALL "--frames 7x", 2, "one number");
+}
+
+static void test_frame_that_is_missing_is_named(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+    write_maps(0, 2);
+    write_maps(4, 5);
+    fails(SMALL "--env in_%04d.pfm --frames 3..3 --out a.pfm", 1, "there is no in_0003.pfm");
+    fails(SMALL "--env in_%04d.pfm --frames 9 --out a.pfm", 1, "there is no in_0009.pfm");
 }
 
 static void test_missing_frames_stop_by_default_and_keep_the_rest(void **state)
@@ -318,7 +455,7 @@ static void test_bad_texels_name_their_frames_in_few_lines(void **state)
     for (unsigned i = 0; i < 8; i++)
         write_map(number_name("in_%04d.pfm", i), 2, 1, NAN);
     succeeds(SMALL "--env in_%04d.pfm --out out_%04d.pfm --stats a.json");
-    says("in_0000.pfm has 1 bad pixel");
+    says("in_0000.pfm has 1 bad pixel: 1 NaN (taken as black)\n");
     says("8 frames in all have bad pixels, 8");
     assert_true(count_lines("\n") <= 5);
     json_t *stats = load_json("a.json");
@@ -327,6 +464,24 @@ static void test_bad_texels_name_their_frames_in_few_lines(void **state)
     for (size_t i = 0; i < 8; i++)
         assert_true(number_of(json_object_get(json_array_get(frames, i), "bad_texels"), "nan") == 1);
     json_decref(stats);
+}
+
+static void test_colours_out_of_gamut_are_not_called_bad(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+    /* The green of BT.2020. */
+    static const char header[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n"
+                                 "PRIMARIES=.708 .292 .170 .797 .131 .046 .3127 .3290\n\n-Y 2 +X 4\n";
+    static const unsigned char green[4] = {0, 128, 0, 129};
+    unsigned char bytes[sizeof header - 1 + 8 * sizeof green];
+    memcpy(bytes, header, sizeof header - 1);
+    for (size_t i = 0; i < 8; i++)
+        memcpy(bytes + sizeof header - 1 + 4 * i, green, sizeof green);
+    write_bytes("in_0.hdr", bytes, sizeof bytes);
+    succeeds(SMALL "--env in_%d.hdr --out out_%04d.pfm");
+    says("in_0.hdr: 8 pixels were outside of Rec. 709 and lost their negative channels\n");
+    assert_null(strstr(program_err, "bad"));
 }
 
 static void test_size_may_change_and_is_told(void **state)
@@ -536,6 +691,18 @@ static void test_full_disk_ends_a_sequence(void **state)
     assert_int_equal(count_files("."), 1 + 3 + 2);
 }
 
+static void test_full_disk_for_a_contact_sheet_leaves_the_frames(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER | NEEDS_PNG);
+    write_maps(0, 7);
+    program_limits.file_size = 600;
+    fails(SMALL "--size 8x6 --env in_%04d.pfm --out out_%04d.pfm --contact-sheet sheet.png", 1,
+          "sheet.png cannot be written: File too large; 8 of 8 frames written to out_%04d.pfm");
+    fails(SMALL "--size 128x96 --env in_%04d.pfm --frames 0 --out a.png", 1, "a.png cannot be written: File too large");
+    assert_int_equal(count_files("."), 1 + 8 + 8);
+}
+
 /* ---- video --------------------------------------------------------------------------------- */
 
 static void skip_without_video(const char *path)
@@ -621,8 +788,9 @@ static void test_full_disk_leaves_no_half_video(void **state)
     write_long_sequence();
     write_text("a.mkv", "old");
     program_limits.file_size = 20000;
-    assert_int_equal(run_program(SMALL "--env in_%04d.pfm --codec ffv1 --out a.mkv"), 1);
-    says("a.mkv");
+    fails(SMALL "--env in_%04d.pfm --codec ffv1 --out a.mkv", 1,
+          "a.mkv cannot be written: File too large; nothing is kept");
+    assert_null(strstr(program_err, "written to"));
     char text[8];
     assert_int_equal(read_text("a.mkv", text, sizeof text), 3);
     assert_int_equal(count_files("."), 1 + LONG_SEQUENCE + 1);
@@ -637,6 +805,18 @@ static void test_video_cannot_be_resumed_and_says_so(void **state)
     succeeds(SMALL "--env in_%04d.pfm --out a.mkv --resume");
     says("cannot be resumed");
     assert_int_equal(check_video("a.mkv", 24, NULL), 2);
+}
+
+static void test_missing_frames_concern_videos_too(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+    skip_without_video("a.mkv");
+    write_maps(0, 2);
+    succeeds(FURNACE "--size 64x32 --env in_%04d.pfm --codec ffv1 --out a.mkv");
+    assert_int_equal(rename("a.mkv", "a"), 0);
+    succeeds(SMALL "--env a --on-missing skip --out out_%04d.pfm");
+    assert_string_equal(program_err, "");
 }
 
 static void test_video_lights_the_scene(void **state)
@@ -731,12 +911,14 @@ static void test_quiet_sequence_says_nothing(void **state)
 }
 
 /* What the program writes to stderr where that is a terminal. */
-static void run_on_terminal(const char *const *words, char *text, size_t size)
+static void run_on_terminal(const char *const *words, unsigned columns, char *text, size_t size)
 {
     int master = posix_openpt(O_RDWR | O_NOCTTY), status;
     assert_true(master >= 0 && grantpt(master) == 0 && unlockpt(master) == 0);
     int terminal = open(ptsname(master), O_RDWR | O_NOCTTY);
     assert_true(terminal >= 0);
+    const struct winsize shape = {.ws_row = 24, .ws_col = (unsigned short)columns};
+    assert_int_equal(ioctl(terminal, TIOCSWINSZ, &shape), 0);
     fflush(NULL);
     pid_t child = fork();
     assert_true(child >= 0);
@@ -767,16 +949,51 @@ static void test_progress_shows_frames_on_a_terminal_alone(void **state)
     size_t count = 1;
     for (char *word = strtok(line, " "); word != NULL; word = strtok(NULL, " "))
         words[count++] = word;
-    run_on_terminal(words, text, sizeof text);
+    run_on_terminal(words, 80, text, sizeof text);
     assert_string_equal(text, "");
     words[count - 1] = NULL; /* without -q */
-    run_on_terminal(words, text, sizeof text);
+    run_on_terminal(words, 80, text, sizeof text);
     assert_non_null(strstr(text, " of 8 ["));
     assert_non_null(strstr(text, "frames/s, "));
     assert_non_null(strstr(text, " left"));
     assert_null(strchr(text, '\n'));
     succeeds(LONG_RUN "--frames 2..4 --out out_%04d.pfm");
     assert_string_equal(program_err, "");
+}
+
+/* Length of the longest line that is drawn over others. */
+static size_t longest_line(const char *text)
+{
+    size_t longest = 0;
+    for (; *text != 0; text += strspn(text, "\r")) {
+        size_t length = strcspn(text, "\r");
+        longest = length > longest ? length : longest;
+        text += length;
+    }
+    return longest;
+}
+
+static void test_progress_never_wraps(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+    write_long_sequence();
+    static char text[1 << 16];
+    static const unsigned columns[] = {12, 40, 72, 200};
+    static const char *const lines[] = {LONG_RUN "--frames 2..9 --size 320x240 --out out_%04d.pfm",
+                                        LONG_RUN "--frames 2 --size 640x480 --spp 256 --out out.pfm"};
+    for (size_t i = 0; i < 8; i++) {
+        char line[256];
+        const char *words[32] = {getenv("HELIOSTAT_PROGRAM")};
+        size_t count = 1;
+        snprintf(line, sizeof line, "%s", lines[i / 4]);
+        for (char *word = strtok(line, " "); word != NULL; word = strtok(NULL, " "))
+            words[count++] = word;
+        run_on_terminal(words, columns[i % 4], text, sizeof text);
+        assert_true(longest_line(text) > 6 && longest_line(text) < columns[i % 4]);
+        assert_true(columns[i % 4] == 12 ? strchr(text, '[') == NULL
+                                         : columns[i % 4] == 40 || strchr(text, '[') != NULL);
+    }
 }
 
 static void test_idle_options_of_sequences_are_told(void **state)
@@ -808,14 +1025,23 @@ int main(void)
         program_test(test_one_picture_is_refused_for_many_frames),
         program_test(test_still_picture_may_be_numbered),
         program_test(test_names_with_other_numbers_are_refused),
+        program_test(test_endings_of_pictures_and_videos_are_listed),
+        program_test(test_advice_for_a_name_with_a_percent_sign_is_sound),
         program_test(test_inputs_are_never_replaced),
+        program_test(test_no_output_replaces_a_map_of_the_sequence),
+        program_test(test_frame_is_not_written_over_a_later_map),
+        program_test(test_six_faces_are_inputs_too),
+        program_test(test_reports_are_no_frames_of_the_run),
         program_test(test_range_takes_these_frames_only),
+        program_test(test_one_number_takes_one_frame),
+        program_test(test_frame_that_is_missing_is_named),
         program_test(test_missing_frames_stop_by_default_and_keep_the_rest),
         program_test(test_missing_frames_may_be_skipped),
         program_test(test_missing_frames_may_hold_the_last_one),
         program_test(test_many_unreadable_frames_are_told_in_few_lines),
         program_test(test_source_without_frames_is_a_failure),
         program_test(test_bad_texels_name_their_frames_in_few_lines),
+        program_test(test_colours_out_of_gamut_are_not_called_bad),
         program_test(test_size_may_change_and_is_told),
         program_test(test_sequence_keeps_the_exposure_of_its_first_frame),
         program_test(test_seed_mode),
@@ -826,11 +1052,13 @@ int main(void)
         program_test(test_resume_of_all_frames_makes_none),
         program_test(test_resume_with_another_size_is_refused),
         program_test(test_full_disk_ends_a_sequence),
+        program_test(test_full_disk_for_a_contact_sheet_leaves_the_frames),
         program_test(test_full_disk_leaves_no_half_video),
         program_test(test_video_holds_all_frames),
         program_test(test_video_that_ends_early_is_finished),
         program_test(test_video_is_finished_when_interrupted),
         program_test(test_video_cannot_be_resumed_and_says_so),
+        program_test(test_missing_frames_concern_videos_too),
         program_test(test_video_lights_the_scene),
         program_test(test_contact_sheet_shows_a_dozen_frames),
         program_test(test_contact_sheet_of_a_sequence_of_unknown_length),
@@ -839,6 +1067,7 @@ int main(void)
         program_test(test_day_is_what_lights_without_options),
         program_test(test_quiet_sequence_says_nothing),
         program_test(test_progress_shows_frames_on_a_terminal_alone),
+        program_test(test_progress_never_wraps),
         program_test(test_idle_options_of_sequences_are_told),
     };
     return cmocka_run_group_tests(tests, set_up_program, tear_down_program);

@@ -246,6 +246,18 @@ static void test_mistakes_in_specifications_are_told_before_anything_is_opened(v
     }
     assert_int_equal(helio_source_check(NULL, NULL), HELIO_ERR_ARGUMENT);
 
+    static const char *const told[][2] = {
+        {"constant:1,2,3,4", "environment \"constant:1,2,3,4\": it has more than 3 numbers"},
+        {"sky:disc=2", "environment \"sky:disc=2\": disc is 2; use 0 or 1"},
+        {"sky:disc=0.5", "disc is 0.5; use 0 or 1"},
+        {"sky:disc=no", "disc is \"no\"; use 0 or 1"},
+        {"sky:date=2026-02-30", "environment \"sky:date=2026-02-30\": there is no day 30"},
+        {"sky:day,date=1800-01-01",
+         "environment \"sky:day,date=1800-01-01\": the sun's place is not known in the year"},
+    };
+    for (size_t i = 0; i < COUNT(told); i++)
+        expect_open_failure(told[i][0], NULL, HELIO_ERR_ARGUMENT, told[i][1]);
+
     char *endless = malloc(100001);
     memset(endless, 'a', 100000);
     endless[100000] = 0;
@@ -579,6 +591,12 @@ static void test_six_faces_are_one_frame(void **state)
     assert_ok(helio_source_apply(source, &frame, environment, NULL));
     assert_true(fabsf(helio_environment_cube(environment)[2 * 4 * 4 * 3] - 3.0f) < 1e-5f); /* +Y */
     helio_environment_destroy(environment);
+    helio_source_close(source);
+    const helio_source_desc latlong = {.layout = HELIO_LAYOUT_LATLONG};
+    expect_open_failure(pattern, &latlong, HELIO_ERR_ARGUMENT, "layout cannot be latlong");
+    expect_open_failure(directory, &latlong, HELIO_ERR_ARGUMENT, "layout cannot be latlong");
+    source = open_source(in_directory("sky_py.pfm"), NULL); /* a square, which may be one of six */
+    expect_next_failure(source, HELIO_ERR_DATA, "if this is one of the six files of a cube, it is faces");
     helio_source_close(source);
     assert_int_equal(unlink(in_directory("sky_ny.pfm")), 0);
     expect_open_failure(pattern, NULL, HELIO_ERR_IO, "lacks");
@@ -1144,7 +1162,9 @@ static void test_files_that_are_neither_picture_nor_video_are_told(void **state)
 {
     (void)state;
     write_text("notes", "neither the one nor the other, and long enough to be looked at by a prober of formats\n");
-    expect_open_failure(in_directory("notes"), NULL, HELIO_ERR_DATA, "neither a picture nor a video");
+    expect_open_failure(in_directory("notes"), NULL, HELIO_ERR_DATA,
+                        "notes is no picture of a kind that is known here, and it");
+    assert_null(strstr(strstr(helio_last_error(), "notes") + 1, "notes")); /* named once */
     write_text("map.exr", "not OpenEXR at all");
     helio_source *source = open_source(in_directory("map.exr"), NULL);
     expect_next_failure(source, HELIO_ERR_DATA, "map.exr is not a picture");
@@ -1154,6 +1174,64 @@ static void test_files_that_are_neither_picture_nor_video_are_told(void **state)
     source = open_source(in_directory("picture.mp4"), NULL);
     assert_int_equal(helio_source_get_info(source).kind, HELIO_SOURCE_FILE);
     expect_frame(source, 0, 2.0f, false);
+    helio_source_close(source);
+}
+
+static uint32_t find_checksum(const unsigned char *bytes, size_t size)
+{
+    uint32_t sum = UINT32_MAX;
+    for (size_t i = 0; i < size; i++) {
+        sum ^= bytes[i];
+        for (int bit = 0; bit < 8; bit++)
+            sum = sum >> 1 ^ (sum & 1 ? UINT32_C(0xedb88320) : 0);
+    }
+    return ~sum;
+}
+
+/* A picture that says of itself to be the first of some, behind the file's signature and its first chunk. */
+static void write_animation(const char *path, unsigned char frames)
+{
+    enum { CUT = 33, CHUNK = 20, MOST = 4096 };
+    static const float rgba[WIDTH * HEIGHT * 4];
+    unsigned char bytes[MOST], chunk[CHUNK] = {0, 0, 0, 8, 'a', 'c', 'T', 'L', 0, 0, 0, frames};
+    uint32_t sum = find_checksum(chunk + 4, 12);
+    for (int i = 0; i < 4; i++)
+        chunk[16 + i] = (unsigned char)(sum >> (24 - 8 * i));
+    assert_ok(
+        helio_picture_write(context, path, &(helio_picture){.width = WIDTH, .height = HEIGHT, .rgba = rgba}, NULL));
+    FILE *stream = fopen(path, "rb");
+    assert_non_null(stream);
+    size_t size = fread(bytes, 1, MOST - CHUNK, stream);
+    assert_int_equal(fclose(stream), 0);
+    assert_in_range(size, CUT + 12, MOST - CHUNK - 1);
+    memmove(bytes + CUT + CHUNK, bytes + CUT, size - CUT);
+    memcpy(bytes + CUT, chunk, CHUNK);
+    write_bytes(path, bytes, size + CHUNK);
+}
+
+static void test_of_pictures_that_move_the_first_is_read_with_a_warning(void **state)
+{
+    (void)state;
+    const char *path = in_directory("moving.png");
+    if (helio_picture_check_path(path) != HELIO_OK) {
+        print_message("skipped: %s\n", helio_last_error());
+        skip();
+    }
+    helio_image *image;
+    write_animation(path, 1);
+    helio_source *source = open_source(path, NULL);
+    assert_int_equal(helio_source_get_info(source).kind, HELIO_SOURCE_FILE);
+    expect_frame(source, 0, 0.0f, false);
+    helio_source_close(source);
+    expect_log("", 0);
+    write_animation(path, 3);
+    assert_ok(helio_image_read(context, path, NULL, &image));
+    helio_image_destroy(context, image);
+    expect_log("moving.png is an animation of 3 pictures, of which the first is used", 1);
+    unsigned char cut[40] = "\x89PNG\r\n\x1a\n\0\0\0\rIHDR"; /* the file ends before anything else is told */
+    write_bytes(path, cut, sizeof cut);
+    source = open_source(path, NULL);
+    expect_next_failure(source, HELIO_ERR_DATA, "moving.png");
     helio_source_close(source);
 }
 
@@ -1368,6 +1446,7 @@ int main(void)
         TEST(test_a_day_goes_from_sunrise_to_sunset),
         TEST(test_skies_come_for_cubes_of_any_size_and_beside_maps),
         TEST(test_files_that_are_neither_picture_nor_video_are_told),
+        TEST(test_of_pictures_that_move_the_first_is_read_with_a_warning),
         TEST(test_video_frames_come_in_order),
         TEST(test_parts_of_a_video_can_be_asked_for),
         TEST(test_a_truncated_video_ends_with_a_sentence_after_its_frames),

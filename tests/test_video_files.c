@@ -3,6 +3,8 @@
  * Video files that are damaged, cut off, hostile or not video at all, and devices: frames or one sentence. */
 #include "video_support.h"
 
+#include <heliostat/source.h>
+
 #include <math.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -371,6 +373,68 @@ static void sound_alone_is_no_video(void **state)
     expect(&result, HELIO_ERR_DATA, "holds no video");
 }
 
+/* Code 188 in all samples but those of the first frame. */
+static unsigned flicker(const video_clip *clip, int frame, int component, int x, int y)
+{
+    (void)clip;
+    (void)component;
+    return frame == 0 ? (unsigned)(x + y) : 188;
+}
+
+/* As sRGB, as other PNG files are, though nothing in the file says so. */
+static void animated_png_is_a_video(void **state)
+{
+    fixture *f = *state;
+    join(f->path, f->directory, "moving.png");
+    const video_clip made = {.muxer = "apng",
+                             .codec = AV_CODEC_ID_APNG,
+                             .format = AV_PIX_FMT_RGB24,
+                             .width = 16,
+                             .height = 8,
+                             .frames = 3,
+                             .range = AVCOL_RANGE_JPEG,
+                             .primaries = AVCOL_PRI_UNSPECIFIED,
+                             .transfer = AVCOL_TRC_UNSPECIFIED,
+                             .matrix = AVCOL_SPC_RGB,
+                             .code = flicker};
+    write_clip(f->path, &made);
+    helio_source *source;
+    helio_source_frame frame;
+    assert_ok(helio_source_open(f->context, f->path, NULL, &source));
+    assert_int_equal(helio_source_get_info(source).kind, HELIO_SOURCE_VIDEO);
+    for (uint64_t i = 0; i < 3; i++) {
+        assert_ok(helio_source_next(source, &frame));
+        assert_non_null(frame.rgb);
+        assert_int_equal(frame.index, i);
+        assert_true(i == 0 || fabs((double)frame.rgb[7] - pow((188 / 255.0 + 0.055) / 1.055, 2.4)) < 1e-4);
+    }
+    assert_ok(helio_source_next(source, &frame));
+    assert_null(frame.rgb);
+    helio_source_close(source);
+}
+
+/* Two frames of one pixel. */
+static void animated_webp_is_named_where_it_cannot_be_decoded(void **state)
+{
+    static const unsigned char WEBP[] =
+        "\x52\x49\x46\x46\x86\x00\x00\x00\x57\x45\x42\x50\x56\x50\x38\x58\x0a\x00\x00\x00\x02\x00\x00\x00"
+        "\x00\x00\x00\x00\x00\x00\x41\x4e\x49\x4d\x06\x00\x00\x00\x00\x00\x00\x00\x00\x00\x41\x4e\x4d\x46"
+        "\x28\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x64\x00\x00\x02\x56\x50\x38\x4c"
+        "\x10\x00\x00\x00\x2f\x00\x00\x00\x00\x07\x50\xc0\xe8\x7f\xff\x03\x11\xd1\xff\x00\x41\x4e\x4d\x46"
+        "\x2a\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x64\x00\x00\x00\x56\x50\x38\x4c"
+        "\x11\x00\x00\x00\x2f\x00\x00\x00\x00\x07\x50\xc0\x22\xf7\xbf\xff\x81\x88\xe8\x7f\x00\x00";
+    fixture *f = *state;
+    join(f->path, f->directory, "moving.webp");
+    save_bytes(f->path, WEBP, sizeof WEBP - 1);
+    outcome result = read_all(f, f->path, NULL);
+    if (result.frames > 0 || avcodec_find_decoder(AV_CODEC_ID_WEBP) == NULL) {
+        print_message("skipped: the FFmpeg here can decode animated WebP, or no WebP at all\n");
+        skip();
+    }
+    expect(&result, HELIO_ERR_UNSUPPORTED, "moving.webp is an animated WebP picture");
+    assert_true(result.ended);
+}
+
 /* A playlist names a file that is there, and which must stay unread. */
 static void files_cannot_lead_to_others(void **state)
 {
@@ -554,6 +618,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(flipped_bits_do_no_harm, set_up, tear_down),
         cmocka_unit_test_setup_teardown(what_is_no_video_is_refused_in_a_sentence, set_up, tear_down),
         cmocka_unit_test_setup_teardown(sound_alone_is_no_video, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(animated_png_is_a_video, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(animated_webp_is_named_where_it_cannot_be_decoded, set_up, tear_down),
         cmocka_unit_test_setup_teardown(files_cannot_lead_to_others, set_up, tear_down),
         cmocka_unit_test_setup_teardown(large_frames_are_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_patterns_come_from_lavfi, set_up, tear_down),

@@ -46,7 +46,9 @@ typedef struct helio_pixels {
 /* What one update saw. A NaN or infinite channel makes its pixel 0, a negative channel becomes 0. Channels beyond 1e30
  * in magnitude count as infinite: no light is that bright, and sums of such numbers would not fit a float. */
 typedef struct helio_environment_info {
-    helio_bad_pixels bad;  /* of the map, as given to helio_environment_update() */
+    helio_bad_pixels bad;  /* of the map, as given to helio_environment_update(): negative ones include those that only
+                              colour conversion made so, being out of gamut. Their number is bad.negative minus the
+                              bad.negative of helio_image or helio_source_frame, which count pixels as stored */
     double flux[6];        /* integral of luminance over each face: radiance unit x sr */
     double mean_luminance; /* over the sphere: sum of flux / (4 pi) */
     float max_luminance;   /* of a texel of the cube */

@@ -17,7 +17,7 @@ typedef enum helio_layout {
     HELIO_LAYOUT_LATLONG,  /* OpenEXR's axes: top row +Y, centre column +Z, a quarter from the left +X */
     HELIO_LAYOUT_CROSS_V,  /* 3x4 faces: +Y; -X +Z +X; -Y; -Z turned by half a turn. As in the Vulkan/OpenGL tables */
     HELIO_LAYOUT_CROSS_H,  /* 4x3 faces: +Y over the second of -X +Z +X -Z, -Y under it */
-    HELIO_LAYOUT_FACES,    /* six files, one for each face; in memory they are a 1x6 STRIP */
+    HELIO_LAYOUT_FACES,    /* six files, one for each face; in memory they are a STRIP, one face wide and six high */
     HELIO_LAYOUT_STRIP,    /* six faces +X -X +Y -Y +Z -Z, 6x1 or 1x6, each as in the Vulkan/OpenGL tables */
     HELIO_LAYOUT_STRIP_OPENEXR, /* 1x6 (stacked), OpenEXR's face orientation, outer pixel centres on the face edges */
     HELIO_LAYOUT_OCTAHEDRAL,    /* square; centre +Y, right +X, down -Z; corners -Y */
@@ -34,7 +34,7 @@ HELIO_API const char *helio_layout_name(helio_layout layout);
 HELIO_API helio_status helio_layout_parse(const char *name, helio_layout *layout);
 
 /* The shape of a map of this layout that holds as much as a cube of 6 x size^2 texels: lat-long maps are 4 size wide,
- * squares and discs 2 sqrt(2) size, rounded up to even. FACES: as STRIP, 1x6. */
+ * squares and discs 2 sqrt(2) size, rounded up to even. FACES and STRIP: one face wide, six high. */
 HELIO_API helio_status helio_layout_shape(helio_layout layout, uint32_t size, uint32_t *width, uint32_t *height);
 
 /* What layout a picture of this shape has. hint: what metadata or somebody says, or AUTO. A lat-long map is twice as
@@ -55,7 +55,8 @@ typedef struct helio_image {
     float *rgb;   /* [height][width][3], linear Rec. 709; may hold NaN, Inf and negative values as the file does */
     float *alpha; /* [height][width] in 0..1, or NULL where the file has none */
     helio_layout layout;  /* what the file says (OpenEXR's envmap attribute, or a comment "layout: NAME"), else AUTO */
-    helio_bad_pixels bad; /* as stored, before any colour conversion */
+    helio_bad_pixels bad; /* as stored, before any colour conversion, which may make more of rgb negative: what is out
+                             of Rec. 709's gamut. helio_environment_info.bad counts these, too */
 } helio_image;
 
 typedef struct helio_image_read_desc {
@@ -76,8 +77,11 @@ typedef struct helio_image_read_desc {
  *
  * Six square files of one size, without alpha, become a STRIP: those of a folder that end in the name of a face before
  * their extension (px.exr, sky_px.exr), or those that fit a path with one %s in the file's name for that name, where no
- * file has the path itself. Names, in any case: px nx py ny pz nz; posx negx posy...; right left top (up) bottom (down)
- * front back; +x -x...; x+ x-...; and with %s also 0 to 5. */
+ * file has the path itself. Names, in any case: px nx py ny pz nz; posx negx posy...; pos_x neg_x...; positive_x
+ * negative_x...; xp xn...; right left top (up) bottom (down) front back; rt lf up dn ft bk; +x -x...; x+ x-...; and 0
+ * to 5, with %s or in a folder of six pictures that are all named so.
+ *
+ * Of an animated PNG the first picture, with a warning; helio_source_open() plays it. */
 HELIO_API helio_status helio_image_read(helio_context *context, const char *path, const helio_image_read_desc *desc,
                                         helio_image **image);
 HELIO_API void helio_image_destroy(helio_context *context, helio_image *image);
@@ -106,7 +110,7 @@ typedef struct helio_picture {
 typedef struct helio_picture_write_desc {
     float exposure;        /* stops, applied in PNG only; default 0 */
     helio_tonemap tonemap; /* PNG only */
-    bool alpha;            /* PNG: write RGBA, straight; default: RGB */
+    bool alpha;            /* PNG: write RGBA, with straight alpha; default: RGB */
 } helio_picture_write_desc;
 
 /* Writes by the extension of path: .exr (float, ZIP; R G B A, object.A, albedo.R/G/B, normal.X/Y/Z, position.X/Y/Z,
@@ -123,7 +127,7 @@ HELIO_API helio_status helio_picture_check_path(const char *path);
 typedef struct helio_map {
     uint32_t width, height;
     const float *rgb;    /* [height][width][3], linear Rec. 709; stays the caller's */
-    helio_layout layout; /* not AUTO. FACES: rgb is a 1x6 strip, and six files are written */
+    helio_layout layout; /* not AUTO. FACES: rgb is a strip, one face wide and six high; six files are written */
 } helio_map;
 
 typedef struct helio_map_write_desc {

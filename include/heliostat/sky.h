@@ -27,7 +27,7 @@ typedef struct helio_sky_place {
 
 /* The sun's centre as it is seen, refraction included. */
 typedef struct helio_sun {
-    double azimuth;   /* degrees from north over east, 0..360 */
+    double azimuth;   /* degrees from north over east; as a result 0..360 */
     double elevation; /* degrees above the horizon, -90..90 */
     double distance;  /* astronomical units */
 } helio_sun;
@@ -41,9 +41,12 @@ HELIO_API helio_status helio_sun_find(const helio_sky_place *place, helio_sun *s
 HELIO_API helio_status helio_sun_day(const helio_sky_place *place, double *sunrise, double *sunset);
 
 typedef struct helio_sky_desc {
-    helio_sun sun;   /* required; azimuth -360..360, distance 0.9..1.1, default 1 */
+    /* As it is seen: azimuth and elevation are required. Here the azimuth may be -360..360, so that angles need not be
+     * brought to 0..360 first; distance 0.9..1.1, default 1. */
+    helio_sun sun;
     float turbidity; /* 1 (pure air) .. 10 (haze); default 3 */
-    float albedo;    /* of the ground, 0..1; it lights the sky from below, and is what is seen below the horizon */
+    float albedo;    /* of the ground, 0..1; default 0, black ("sky:" of sources has 0.2). It lights the sky from below,
+                        and is what is seen below the horizon */
     bool no_disc;    /* the sky without the sun itself, though lit by it, as the ground is */
 } helio_sky_desc;
 

@@ -95,6 +95,10 @@ HELIO_API helio_status helio_source_check(const char *specification, helio_sourc
 
 HELIO_API helio_source_info helio_source_get_info(const helio_source *source);
 
+/* May a file be written here while the source is read? HELIO_ERR_ARGUMENT for the files that it reads, by whatever
+ * name, and for names of frames that are missing. Looks through the folders at the first call. */
+HELIO_API helio_status helio_source_check_output(helio_source *source, const char *path);
+
 /* The next frame, valid until the next call; waits where it is not read yet. *frame has rgb and sky NULL at the end.
  * After a failure that a sequence or a video cannot get over (a truncated file, a device that went away) the source
  * stays at its end. */

@@ -30,10 +30,10 @@ HELIO_API helio_status helio_transfer_parse(const char *name, helio_transfer *tr
 typedef struct helio_video_reader helio_video_reader;
 
 typedef struct helio_video_read_desc {
-    helio_transfer transfer;
-    uint64_t max_pixels; /* of one frame; larger ones are refused before memory is taken. Default: 2^26 */
-    const char *device;  /* name of the FFmpeg device or virtual device that path belongs to ("v4l2", "lavfi"); default:
-                            path is a file */
+    helio_transfer transfer; /* overrules the stream; default: AUTO */
+    uint64_t max_pixels;     /* of one frame; larger ones are refused before memory is taken. Default: 2^26 */
+    const char *device; /* name of the FFmpeg device or virtual device that path belongs to ("v4l2", "lavfi"); default:
+                           path is a file */
 } helio_video_read_desc;
 
 typedef struct helio_video_info {
@@ -67,6 +67,8 @@ HELIO_API helio_status helio_video_next(helio_video_reader *reader, helio_video_
 
 /* ---- writing --------------------------------------------------------------------- */
 
+/* SDR shows the sRGB values of a PNG of the same picture. FFV1 has exactly these; other codecs lose some in converting
+ * to Y'CbCr, in halving the chroma and in compressing. */
 typedef struct helio_video_writer helio_video_writer;
 
 typedef struct helio_video_write_desc {
@@ -80,16 +82,18 @@ typedef struct helio_video_write_desc {
     helio_tonemap tonemap;
 } helio_video_write_desc;
 
-/* SDR holds the same sRGB values as a PNG of the picture. HELIO_OK if path ends in .mp4, .mkv, .mov or .webm and this
- * build can write it; else the reason. */
+/* HELIO_OK if path ends in .mp4, .mkv, .mov or .webm and this build can write it; else the reason. */
 HELIO_API helio_status helio_video_check_path(const char *path, const helio_video_write_desc *desc);
+
+/* Does path end in one of these, in any case? The same in all builds; path may be NULL. */
 HELIO_API bool helio_video_has_extension(const char *path);
 
 /* The file is made under a temporary name in the same directory, or under none. */
 HELIO_API helio_status helio_video_create(helio_context *context, const char *path, const helio_video_write_desc *desc,
                                           helio_video_writer **writer);
 HELIO_API helio_status helio_video_add(helio_video_writer *writer, const helio_picture *picture); /* rgba over black */
-/* Finishes the file and renames it; with keep false, removes it. Destroys the writer in any case. */
+/* Finishes the file and renames it. With keep false, and where this fails or helio_video_add() failed before, as on a
+ * full disk, nothing new is left: an older file of that name stays as it was. Destroys the writer in any case. */
 HELIO_API helio_status helio_video_finish(helio_video_writer *writer, bool keep);
 
 #ifdef __cplusplus

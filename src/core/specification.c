@@ -109,19 +109,21 @@ static helio_status add_text(const reader *r, const specification_field *field, 
 static helio_status add_number(const reader *r, const specification_field *field, uint32_t index, const char *text,
                                int length)
 {
-    const char *key = field->key[0] ? field->key : "its number";
+    const char *key = field->key[0] ? field->key : "its number", *to = field->no_between ? "or" : "to";
     if (index >= field->count)
-        return fail(HELIO_ERR_ARGUMENT, "%s \"%.200s\": %s has more than %u number%s", r->what, r->text, key,
-                    field->count, field->count == 1 ? "" : "s");
+        return fail(HELIO_ERR_ARGUMENT, "%s \"%.200s\": %s has more than %u number%s", r->what, r->text,
+                    field->key[0] ? field->key : "it", field->count, field->count == 1 ? "" : "s");
     if (field->text != NULL)
         return add_text(r, field, text, length);
     float number;
     if (!read_number(text, (size_t)length, &number))
-        return fail(HELIO_ERR_ARGUMENT, "%s \"%.200s\": %s is \"%.*s\"; use a number from %g to %g", r->what, r->text,
-                    key, length > 60 ? 60 : length, text, (double)field->least, (double)field->greatest);
-    if (!(number >= field->least && number <= field->greatest))
-        return fail(HELIO_ERR_ARGUMENT, "%s \"%.200s\": %s is %.*s; use %g to %g", r->what, r->text, key, length, text,
-                    (double)field->least, (double)field->greatest);
+        return fail(HELIO_ERR_ARGUMENT, "%s \"%.200s\": %s is \"%.*s\"; use %s%g %s %g", r->what, r->text, key,
+                    length > 60 ? 60 : length, text, field->no_between ? "" : "a number from ", (double)field->least,
+                    to, (double)field->greatest);
+    bool is_end = number == field->least || number == field->greatest;
+    if (!is_end && (field->no_between || !(number > field->least && number < field->greatest)))
+        return fail(HELIO_ERR_ARGUMENT, "%s \"%.200s\": %s is %.*s; use %g %s %g", r->what, r->text, key, length, text,
+                    (double)field->least, to, (double)field->greatest);
     field->values[index] = number;
     return HELIO_OK;
 }

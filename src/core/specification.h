@@ -12,6 +12,7 @@ typedef struct specification_field {
     const char *key;       /* "" for the numbers that follow the colon without a key, as in "diffuse:0.8" */
     uint32_t count;        /* numbers that it takes, at least 1 */
     bool one_for_all;      /* a single number is fine too and stands for all of them */
+    bool no_between;       /* each is the least or the greatest */
     float least, greatest; /* range of each number */
     float *values;         /* [count], written only if the key is given */
     bool given;            /* was it? */

@@ -85,9 +85,6 @@ static helio_status resolve(const char *text, const sky_text *given, const speci
                             sky_specification *s)
 {
     s->desc = (helio_sky_desc){.turbidity = given->turbidity, .albedo = given->albedo, .no_disc = given->disc == 0.0f};
-    if (given->disc != 0.0f && given->disc != 1.0f)
-        return fail(HELIO_ERR_ARGUMENT, "environment \"%.200s\": disc is %g; use 1 for a sky with the sun, 0 without",
-                    text, (double)given->disc);
     s->has_sun = fields[AZIMUTH].given;
     s->desc.sun = (helio_sun){(double)given->azimuth, (double)given->elevation, 1.0};
     if (s->has_sun)
@@ -97,7 +94,8 @@ static helio_status resolve(const char *text, const sky_text *given, const speci
     s->place.zone = fields[ZONE].given ? (double)given->zone : round((double)given->longitude / 15.0) + 0.0; /* no -0 */
     HELIO_TRY(read_date(text, given->date, &s->place));
     HELIO_TRY(read_time(text, given->time, &s->place));
-    return helio_sun_find(&s->place, &s->desc.sun);
+    helio_status status = helio_sun_find(&s->place, &s->desc.sun);
+    return status == HELIO_OK ? status : fail(status, "environment \"%.200s\": %s", text, helio_last_error());
 }
 
 enum { DAY_TEXT_SIZE = 512 };
@@ -136,7 +134,7 @@ helio_status sky_specification_parse(const char *text, sky_specification *specif
         [ELEVATION] = {.key = "elevation", .count = 1, .least = -90, .greatest = 90, .values = &t.elevation},
         [TURBIDITY] = {.key = "turbidity", .count = 1, .least = 1, .greatest = 10, .values = &t.turbidity},
         [ALBEDO] = {.key = "albedo", .count = 1, .least = 0, .greatest = 1, .values = &t.albedo},
-        [DISC] = {.key = "disc", .count = 1, .least = 0, .greatest = 1, .values = &t.disc},
+        [DISC] = {.key = "disc", .count = 1, .no_between = true, .least = 0, .greatest = 1, .values = &t.disc},
     };
     char rest[DAY_TEXT_SIZE];
     bool is_day = false;

@@ -5,9 +5,12 @@
 #include "core/error.h"
 #include "core/name_list.h"
 #include "env/environment.h"
+#include "env/source_files.h"
 #include "env/source_memory.h"
 #include "env/source_queue.h"
 #include "image/image.h"
+#include "image/png_animation.h"
+#include "image/video_reader.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -27,6 +30,7 @@ struct helio_source {
     source_specification specification; /* points into label */
     helio_source_desc desc;             /* with defaults resolved */
     helio_source_info info;
+    source_files files;    /* found when they are first asked for */
     source_memory *memory; /* of the frames */
     source_queue queue;
     bool is_at_end;
@@ -87,15 +91,32 @@ static bool is_path(helio_source_kind kind)
     return kind == HELIO_SOURCE_FILE || kind == HELIO_SOURCE_SEQUENCE || kind == HELIO_SOURCE_VIDEO;
 }
 
-/* Does the file begin as the pictures do that can be read? */
-static bool looks_like_picture(const char *path)
+static size_t read_bytes(const void *descriptor, uint64_t at, unsigned char *bytes, size_t size)
+{
+    ssize_t count = pread(*(const int *)descriptor, bytes, size, (off_t)at);
+    return count > 0 ? (size_t)count : 0;
+}
+
+typedef enum file_look {
+    LOOKS_UNKNOWN,
+    LOOKS_LIKE_PICTURE,   /* of a kind that can be read */
+    LOOKS_LIKE_ANIMATION, /* a PNG file of several pictures, which FFmpeg can play */
+} file_look;
+
+/* By how the file begins. */
+static file_look find_look(const char *path)
 {
     unsigned char bytes[16];
     int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    ssize_t count = descriptor < 0 ? -1 : read(descriptor, bytes, sizeof bytes);
-    if (descriptor >= 0)
-        close(descriptor);
-    return count > 0 && image_is_picture(bytes, (size_t)count);
+    if (descriptor < 0)
+        return LOOKS_UNKNOWN;
+    file_look look = LOOKS_UNKNOWN;
+    if (image_is_picture(bytes, read_bytes(&descriptor, 0, bytes, sizeof bytes)))
+        look = LOOKS_LIKE_PICTURE;
+    if (look == LOOKS_LIKE_PICTURE && png_animation_frames(read_bytes, &descriptor) > 1 && video_reader_plays_png())
+        look = LOOKS_LIKE_ANIMATION;
+    close(descriptor);
+    return look;
 }
 
 /* What there is decides about what the name may mean. */
@@ -113,21 +134,28 @@ static helio_status look_at_file(source_specification *s)
     if (!exists)
         return HELIO_OK;
     source_specification_take_as_file(s);
-    if (S_ISREG(status.st_mode) && looks_like_picture(s->path))
-        s->kind = HELIO_SOURCE_FILE;
-    else if (S_ISREG(status.st_mode) && status.st_size > 0 && !source_specification_is_picture(s))
+    file_look look = S_ISREG(status.st_mode) ? find_look(s->path) : LOOKS_UNKNOWN;
+    if (look != LOOKS_UNKNOWN) {
+        s->is_surely_video = look == LOOKS_LIKE_ANIMATION;
+        s->kind = s->is_surely_video ? HELIO_SOURCE_VIDEO : HELIO_SOURCE_FILE;
+    } else if (S_ISREG(status.st_mode) && status.st_size > 0 && !source_specification_is_picture(s)) {
         s->kind = HELIO_SOURCE_VIDEO;
+    }
     return HELIO_OK;
 }
 
-/* A file that seemed to be neither picture nor video: the latter was the last chance. */
+/* A file that seemed to be neither picture nor video: the latter was the last chance. What is wrong with it as a video
+ * begins with its path, which shall not be said twice. */
 static helio_status open_video(const source_opening *opening, bool is_known, source_reader **reader)
 {
     helio_status status = source_video_open(opening, reader);
     if (status == HELIO_OK || status == HELIO_ERR_MEMORY || status == HELIO_ERR_ARGUMENT || is_known)
         return status;
-    return fail(HELIO_ERR_DATA, "%s is neither a picture nor a video that can be read: %s",
-                opening->specification->path, helio_last_error());
+    const char *path = opening->specification->path, *sentence = helio_last_error();
+    size_t length = strlen(path);
+    if (strncmp(sentence, path, length) != 0 || sentence[length] != ' ')
+        return status;
+    return fail(HELIO_ERR_DATA, "%s is no picture of a kind that is known here, and it%s", path, sentence + length);
 }
 
 static helio_status open_reader(helio_source *source, source_reader **reader)
@@ -139,7 +167,7 @@ static helio_status open_reader(helio_source *source, source_reader **reader)
                               .info = &source->info};
     switch (source->specification.kind) {
     case HELIO_SOURCE_SEQUENCE: return source_sequence_open(&opening, reader);
-    case HELIO_SOURCE_VIDEO: return open_video(&opening, source->specification.has_video_name, reader);
+    case HELIO_SOURCE_VIDEO: return open_video(&opening, source->specification.is_surely_video, reader);
     case HELIO_SOURCE_DEVICE: return source_video_open(&opening, reader);
     case HELIO_SOURCE_CONSTANT: return source_constant_open(&opening, reader);
     case HELIO_SOURCE_SKY:
@@ -207,6 +235,7 @@ void helio_source_close(helio_source *source)
     source_queue_destroy(&source->queue, source->context);
     source_memory_destroy(source->memory);
     helio_sky_destroy(source->sky);
+    source_files_release(source->context, &source->files);
     context_release(source->context, source->label);
     context_release(source->context, source);
 }
@@ -216,6 +245,17 @@ void helio_source_close(helio_source *source)
 helio_source_info helio_source_get_info(const helio_source *source)
 {
     return source->info;
+}
+
+helio_status helio_source_check_output(helio_source *source, const char *path)
+{
+    if (source == NULL || path == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "helio_source_check_output needs a source and a path");
+    if (!source->files.is_complete)
+        HELIO_TRY(source_files_find(source->context, &source->specification, &source->desc, &source->files));
+    if (source_files_has(&source->files, &source->specification, &source->desc, path))
+        return fail(HELIO_ERR_ARGUMENT, "%s would replace an input of %s", path, source->label);
+    return HELIO_OK;
 }
 
 /* Nothing will come any more: neither thread nor memory is needed. */

@@ -62,6 +62,9 @@ helio_status source_sequence_open(const source_opening *opening, source_reader *
 helio_status source_video_open(const source_opening *opening, source_reader **reader);
 helio_status source_sky_open(const source_opening *opening, source_reader **reader);
 
+/* HELIO_ERR_ARGUMENT where path means six faces, but desc wants a layout that these cannot be. */
+helio_status source_check_faces(const helio_source_desc *desc, const char *path);
+
 /* Reads a picture into the slot and finds its layout. */
 helio_status source_read_picture(const source_reader *reader, const char *path, source_slot *slot);
 

@@ -136,6 +136,11 @@ static helio_status find_numbers(sequence *self, uint64_t *count)
     self->first = desc->has_frames ? desc->first : numbers->numbers[0];
     self->last = desc->has_frames ? desc->last : numbers->numbers[numbers->count - 1];
     size_t begin = source_numbers_from(numbers, self->first), end = source_numbers_from(numbers, self->last + 1);
+    char name[SOURCE_PATH_SIZE];
+    if (begin == end && self->first == self->last && source_pattern_format(&self->pattern, desc->first, name))
+        return fail(HELIO_ERR_IO,
+                    "there is no %s, the only frame of %s that is asked for; its files are %" PRIu32 " to %" PRIu32,
+                    name, self->base.label, numbers->numbers[0], numbers->numbers[numbers->count - 1]);
     if (begin == end)
         return fail(
             HELIO_ERR_IO, "%s has no frame from %" PRIu64 " to %" PRIu64 "; its files are %" PRIu32 " to %" PRIu32,

@@ -32,8 +32,8 @@ bool source_specification_is_picture(const source_specification *s)
 void source_specification_take_as_file(source_specification *s)
 {
     s->is_wrong_pattern = false;
-    s->has_video_name = has_video_extension(s->path);
-    s->kind = s->has_video_name ? HELIO_SOURCE_VIDEO : HELIO_SOURCE_FILE;
+    s->is_surely_video = has_video_extension(s->path);
+    s->kind = s->is_surely_video ? HELIO_SOURCE_VIDEO : HELIO_SOURCE_FILE;
 }
 
 static helio_status parse_constant(source_specification *s)

@@ -15,7 +15,7 @@ typedef struct source_specification {
     const char *path;      /* what the device opens, or the text itself */
     bool is_shell_pattern; /* of a sequence; else it has the pattern below */
     bool is_wrong_pattern; /* percent signs that mean nothing: right only if a file has this name */
-    bool has_video_name;
+    bool is_surely_video;  /* its name says so, or how it begins */
     source_pattern pattern;
     float constant[3];
     sky_specification sky; /* of both kinds of sky */

@@ -69,6 +69,7 @@ helio_status source_file_open(const source_opening *opening, source_reader **rea
     const char *path = opening->specification->path;
     face_files faces;
     struct stat status;
+    HELIO_TRY(source_check_faces(opening->desc, path));
     if (faces_are_meant(path, opening->desc->layout == HELIO_LAYOUT_FACES))
         HELIO_TRY(faces_find(path, &faces));
     else if (stat(path, &status) != 0)

@@ -5,17 +5,20 @@
 #include <string.h>
 #include <strings.h>
 
-enum { FACES = 6, SPELLINGS = 6 };
+enum { FACES = 6, SPELLINGS = 10 };
 
 static const char *const NAMES[FACES][SPELLINGS] = {
-    {"px", "posx", "right", "+x", "x+", NULL}, {"nx", "negx", "left", "-x", "x-", NULL},
-    {"py", "posy", "top", "up", "+y", "y+"},   {"ny", "negy", "bottom", "down", "-y", "y-"},
-    {"pz", "posz", "front", "+z", "z+", NULL}, {"nz", "negz", "back", "-z", "z-", NULL},
+    {"px", "posx", "pos_x", "positive_x", "xp", "right", "rt", "+x", "x+", NULL},
+    {"nx", "negx", "neg_x", "negative_x", "xn", "left", "lf", "-x", "x-", NULL},
+    {"py", "posy", "pos_y", "positive_y", "yp", "top", "up", "+y", "y+", NULL},
+    {"ny", "negy", "neg_y", "negative_y", "yn", "bottom", "down", "dn", "-y", "y-"},
+    {"pz", "posz", "pos_z", "positive_z", "zp", "front", "ft", "+z", "z+", NULL},
+    {"nz", "negz", "neg_z", "negative_z", "zn", "back", "bk", "-z", "z-", NULL},
 };
 
 static const char *const LISTS[FACES] = {
-    "px, posx, right, +x or x+",        "nx, negx, left, -x or x-",  "py, posy, top, up, +y or y+",
-    "ny, negy, bottom, down, -y or y-", "pz, posz, front, +z or z+", "nz, negz, back, -z or z-",
+    "px, posx, right, rt or +x",        "nx, negx, left, lf or -x",  "py, posy, top, up or +y",
+    "ny, negy, bottom, down, dn or -y", "pz, posz, front, ft or +z", "nz, negz, back, bk or -z",
 };
 
 int face_names_find(const char *text, size_t length, bool digits)
@@ -30,20 +33,20 @@ int face_names_find(const char *text, size_t length, bool digits)
     return -1;
 }
 
-int face_names_find_last(const char *name, size_t *begin, size_t *end)
+int face_names_find_last(const char *name, bool digits, size_t *begin, size_t *end)
 {
     const char *dot = strrchr(name, '.');
     *end = dot != NULL ? (size_t)(dot - name) : strlen(name);
     for (*begin = 0; *begin < *end; (*begin)++) {
         bool alone = *begin == 0 || !isalnum((unsigned char)name[*begin - 1]) || !isalnum((unsigned char)name[*begin]);
-        int face = alone ? face_names_find(name + *begin, *end - *begin, false) : -1;
+        int face = alone ? face_names_find(name + *begin, *end - *begin, digits) : -1;
         if (face >= 0)
             return face;
     }
     return -1;
 }
 
-const char *face_names_all(int face)
+const char *face_names_usual(int face)
 {
     return LISTS[face];
 }

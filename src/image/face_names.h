@@ -11,10 +11,10 @@
 int face_names_find(const char *text, size_t length, bool digits);
 
 /* The face whose name a file's name ends in, before its extension, and where that begins. The name must stand alone, or
- * behind a sign that is no letter or digit. -1 if there is none. */
-int face_names_find_last(const char *name, size_t *begin, size_t *end);
+ * behind a sign that is no letter or digit. -1 if there is none. digits: as above. */
+int face_names_find_last(const char *name, bool digits, size_t *begin, size_t *end);
 
-/* All spellings of a face, for messages: "px, posx, right, +x or x+". */
-const char *face_names_all(int face);
+/* The usual spellings of a face, for messages: "px, posx, right, rt or +x". */
+const char *face_names_usual(int face);
 
 #endif

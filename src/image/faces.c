@@ -19,6 +19,7 @@
 typedef struct face_search {
     bool any;                    /* names that end in that of a face, else by a pattern: */
     bool digits;                 /* also count as names of faces */
+    unsigned pictures;           /* by their extensions, that are there */
     char before[FACE_NAME_SIZE]; /* its %s */
     const char *after;
 } face_search;
@@ -38,13 +39,18 @@ static bool has_picture_extension(const char *name)
     return false;
 }
 
+bool faces_is_named_like_one(const char *path)
+{
+    size_t begin, end;
+    return face_names_find_last(base_name(path), false, &begin, &end) >= 0;
+}
+
 bool faces_are_meant(const char *path, bool one_of_six)
 {
     struct stat status;
-    size_t begin, end;
     if (stat(path, &status) != 0)
         return strstr(path, "%s") != NULL;
-    return S_ISDIR(status.st_mode) || (one_of_six && face_names_find_last(base_name(path), &begin, &end) >= 0);
+    return S_ISDIR(status.st_mode) || (one_of_six && faces_is_named_like_one(path));
 }
 
 /* The face that a file shows, or -1. */
@@ -52,7 +58,7 @@ static int match(const face_search *search, const char *name)
 {
     size_t begin, end, length = strlen(name);
     if (search->any)
-        return has_picture_extension(name) ? face_names_find_last(name, &begin, &end) : -1;
+        return has_picture_extension(name) ? face_names_find_last(name, search->digits, &begin, &end) : -1;
     size_t before = strlen(search->before), after = strlen(search->after);
     if (length < before + after || strncmp(name, search->before, before) != 0 ||
         strcmp(name + length - after, search->after) != 0)
@@ -79,7 +85,7 @@ static helio_status find_search(const char *path, face_files *files, face_search
         return HELIO_OK;
     size_t begin = 0, end = 0;
     if (exists) {
-        face_names_find_last(name, &begin, &end);
+        face_names_find_last(name, false, &begin, &end);
     } else if (percent != NULL && strstr(percent + 2, "%s") == NULL) {
         begin = (size_t)(percent - name);
         end = begin + 2;
@@ -112,29 +118,59 @@ static helio_status take(const face_search *search, const char *name, face_files
     return HELIO_OK;
 }
 
-static helio_status search_folder(const char *path, const face_search *search, face_files *files)
+static helio_status search_folder(const char *path, face_search *search, face_files *files)
 {
     DIR *folder = opendir(files->folder[0] != 0 ? files->folder : ".");
     if (folder == NULL)
         return fail(HELIO_ERR_IO, "the folder of %s cannot be opened: %s", path, strerror(errno));
     helio_status status = HELIO_OK;
-    for (const struct dirent *entry; status == HELIO_OK && (entry = readdir(folder)) != NULL;)
+    search->pictures = 0;
+    for (const struct dirent *entry; status == HELIO_OK && (entry = readdir(folder)) != NULL;) {
+        search->pictures += has_picture_extension(entry->d_name);
         status = take(search, entry->d_name, files);
+    }
     closedir(folder);
     return status;
+}
+
+/* The first face that has no file, or FACE_COUNT; none: is there a file at all? */
+static int find_lack(const face_files *files, bool *none)
+{
+    int lack = FACE_COUNT;
+    *none = true;
+    for (int face = FACE_COUNT - 1; face >= 0; face--) {
+        lack = files->names[face][0] == 0 ? face : lack;
+        *none = *none && files->names[face][0] == 0;
+    }
+    return lack;
+}
+
+static helio_status fail_for_lack(const char *path, const face_search *search, const face_files *files, int lack)
+{
+    const char *usual = face_names_usual(lack);
+    if (!search->any)
+        return fail(HELIO_ERR_IO, "%s lacks one of the six faces of a cube: a picture named %s", path, usual);
+    return fail(
+        HELIO_ERR_IO,
+        "%s lacks one of the six faces of a cube: a picture named %s; for other names give a pattern with %%s in "
+        "the place of the face's name or number, such as %ssky_%%s.exr",
+        path, usual, files->folder);
 }
 
 helio_status faces_find(const char *path, face_files *files)
 {
     face_search search;
+    bool none;
     memset(files, 0, sizeof *files);
     HELIO_TRY(find_search(path, files, &search));
     HELIO_TRY(search_folder(path, &search, files));
-    for (int face = 0; face < FACE_COUNT; face++)
-        if (files->names[face][0] == 0)
-            return fail(HELIO_ERR_IO, "%s lacks one of the six faces of a cube: a picture named %s", path,
-                        face_names_all(face));
-    return HELIO_OK;
+    int lack = find_lack(files, &none);
+    if (search.any && none && search.pictures == FACE_COUNT) { /* and nothing else: then numbers may be meant */
+        search.digits = true;
+        HELIO_TRY(search_folder(path, &search, files));
+        lack = find_lack(files, &none);
+    }
+    return lack == FACE_COUNT ? HELIO_OK : fail_for_lack(path, &search, files, lack);
 }
 
 /* ---- pictures ---- */

@@ -17,8 +17,12 @@ typedef struct face_files {
  * names that end in that of a face, as in sky_px.exr. */
 bool faces_are_meant(const char *path, bool one_of_six);
 
+/* Does the file's name end in that of a face, before its extension? */
+bool faces_is_named_like_one(const char *path);
+
 /* Finds the files: in a folder those that are named like faces, or end in such a name after a sign that is no letter or
- * digit; by a pattern those with a face's name where it has its %s; for one of six, those like it. */
+ * digit, or by numbers from 0 to 5 if it has six pictures and all are named so; by a pattern those with a face's name
+ * where it has its %s; for one of six, those like it. */
 helio_status faces_find(const char *path, face_files *files);
 
 /* Reads them into a picture of 1 x 6 faces. */

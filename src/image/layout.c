@@ -104,12 +104,12 @@ static helio_status guess_from_shape(uint32_t width, uint32_t height, helio_layo
     if (width == height)
         return fail(HELIO_ERR_DATA,
                     "%u x %u pixels do not tell the layout: a square may be angular, mirrorball, octahedral or "
-                    "equal-area; name the layout",
+                    "equal-area; name the layout (--layout)",
                     width, height);
     return fail(HELIO_ERR_DATA,
                 "%u x %u pixels do not tell the layout: latlong is 2:1, cross-v 3:4, cross-h 4:3, strip 6:1 or 1:6, "
-                "strip-openexr 1:6, and angular, mirrorball, octahedral and equal-area are square; name the layout or "
-                "change the shape",
+                "strip-openexr 1:6, and angular, mirrorball, octahedral and equal-area are square; name the layout "
+                "(--layout) or change the shape",
                 width, height);
 }
 

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "image/colour.h"
 #include "image/image.h"
+#include "image/png_animation.h"
 
 #include <setjmp.h>
 #include <stdio.h>
@@ -67,6 +68,22 @@ static helio_status read_header(png_decoder *decoder)
     decoder->channels = alpha ? 4 : 3;
     uint64_t stored_bytes = png_get_rowbytes(library, decoder->info) * height;
     return image_create(decoder->file, width, height, alpha, stored_bytes / DEFLATE_RATIO, &decoder->image);
+}
+
+static size_t read_bytes(const void *from, uint64_t at, unsigned char *bytes, size_t size)
+{
+    const image_file *file = from;
+    size_t rest = at < file->size ? file->size - (size_t)at : 0, count = size < rest ? size : rest;
+    memcpy(bytes, file->bytes + (rest > 0 ? (size_t)at : 0), count);
+    return count;
+}
+
+static void warn_of_animation(const image_file *file)
+{
+    uint32_t frames = png_animation_frames(read_bytes, file);
+    if (frames > 1)
+        context_log(file->context, HELIO_LOG_WARNING, "%s is an animation of %u pictures, of which the first is used",
+                    file->path, frames);
 }
 
 static uint32_t read_length(const unsigned char *bytes)
@@ -175,6 +192,7 @@ static helio_status decode(png_decoder *decoder)
 helio_status png_read(const image_file *file, helio_image **image)
 {
     HELIO_TRY(check_chunks(file));
+    warn_of_animation(file);
     png_decoder decoder = {.file = file};
     decoder.library = png_create_read_struct(PNG_LIBPNG_VER_STRING, &decoder, on_error, on_warning);
     decoder.info = decoder.library ? png_create_info_struct(decoder.library) : NULL;

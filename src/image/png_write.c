@@ -4,8 +4,10 @@
 #include "image/picture.h"
 #include "image/tonemap.h"
 
+#include <errno.h>
 #include <setjmp.h>
 #include <stdio.h>
+#include <string.h>
 
 #include <png.h>
 
@@ -22,7 +24,9 @@ typedef struct png_encoder {
 static void on_error(png_structp library, png_const_charp message)
 {
     png_encoder *encoder = png_get_error_ptr(library);
-    snprintf(encoder->message, sizeof encoder->message, "%s", message);
+    int reason = errno; /* the library only says that writing failed */
+    bool is_file = encoder->stream != NULL && ferror(encoder->stream) && reason != 0;
+    snprintf(encoder->message, sizeof encoder->message, "%s", is_file ? strerror(reason) : message);
     png_longjmp(library, 1);
 }
 

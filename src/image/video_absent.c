@@ -4,7 +4,8 @@
 
 static helio_status fail_without_ffmpeg(const char *path)
 {
-    return fail(HELIO_ERR_UNSUPPORTED, "%s is video, and this build has no FFmpeg; build with it or use pictures",
+    return fail(HELIO_ERR_UNSUPPORTED,
+                "%s needs FFmpeg, as all video does, and this build has none; build with it or use pictures",
                 path != NULL ? path : "this");
 }
 
@@ -21,6 +22,11 @@ helio_status helio_video_open(helio_context *context, const char *path, const he
 void helio_video_close(helio_video_reader *reader)
 {
     (void)reader;
+}
+
+bool video_reader_plays_png(void)
+{
+    return false;
 }
 
 void video_reader_heed(helio_video_reader *reader, const atomic_bool *stopping)

@@ -70,6 +70,8 @@ static helio_status open_file(video_input *input, video_log *log)
     input->format->pb = input->io;
     input->format->io_open = refuse_to_open;
     int code = avformat_open_input(&input->format, input->path, NULL, NULL);
+    if (code == AVERROR_INVALIDDATA && log->error[0] == 0)
+        return fail(HELIO_ERR_DATA, "%s is no video that can be read", input->path);
     return code >= 0 ? HELIO_OK
                      : fail(HELIO_ERR_DATA, "%s is damaged or no video that can be read: %s", input->path,
                             video_log_reason(log, code));

@@ -30,6 +30,7 @@ struct helio_video_reader {
     uint64_t packets, frames; /* read and given out so far */
     int64_t first_time;       /* of the first frame, in the stream's unit */
     bool has_time, warned;
+    bool is_webp_animation;
     bool is_draining;    /* nothing more to read */
     unsigned faults;     /* since then */
     bool is_ended;       /* nothing more to give */
@@ -72,6 +73,13 @@ static helio_status find_turn(const helio_video_reader *reader, const AVFrame *f
 
 /* ---- opening ---- */
 
+/* PNG files are sRGB, as those of a single picture are taken. */
+static enum AVColorTransferCharacteristic known_transfer(enum AVColorTransferCharacteristic tag, enum AVCodecID codec)
+{
+    bool is_srgb = codec == AV_CODEC_ID_APNG || codec == AV_CODEC_ID_PNG;
+    return is_srgb && tag == AVCOL_TRC_UNSPECIFIED ? AVCOL_TRC_IEC61966_2_1 : tag;
+}
+
 static video_tags stream_tags(const AVCodecParameters *stream)
 {
     return (video_tags){.format = stream->format,
@@ -79,18 +87,18 @@ static video_tags stream_tags(const AVCodecParameters *stream)
                         .height = stream->height,
                         .range = stream->color_range,
                         .primaries = stream->color_primaries,
-                        .transfer = stream->color_trc,
+                        .transfer = known_transfer(stream->color_trc, stream->codec_id),
                         .matrix = stream->color_space};
 }
 
-static video_tags frame_tags(const AVFrame *frame)
+static video_tags frame_tags(const AVFrame *frame, enum AVCodecID codec)
 {
     return (video_tags){.format = frame->format,
                         .width = frame->width,
                         .height = frame->height,
                         .range = frame->color_range,
                         .primaries = frame->color_primaries,
-                        .transfer = frame->color_trc,
+                        .transfer = known_transfer(frame->color_trc, codec),
                         .matrix = frame->colorspace};
 }
 
@@ -203,6 +211,11 @@ void helio_video_close(helio_video_reader *reader)
     context_release(reader->context, reader);
 }
 
+bool video_reader_plays_png(void)
+{
+    return av_find_input_format("apng") != NULL && avcodec_find_decoder(AV_CODEC_ID_APNG) != NULL;
+}
+
 void video_reader_heed(helio_video_reader *reader, const atomic_bool *stopping)
 {
     reader->input.stopping = stopping;
@@ -241,6 +254,15 @@ static void judge_end(helio_video_reader *reader, int code)
     snprintf(reader->complaint, sizeof reader->complaint, "%s", reason);
 }
 
+/* Some FFmpegs find nothing in these, and say nothing. */
+static bool is_webp_animation(const helio_video_reader *reader)
+{
+    enum { FLAGS = 20, ANIMATION = 2 }; /* behind the file's head of 12 bytes and the chunk's of 8 */
+    const AVPacket *packet = reader->packet;
+    return reader->input.stream->codecpar->codec_id == AV_CODEC_ID_WEBP && packet->size > FLAGS &&
+           memcmp(packet->data + 12, "VP8X", 4) == 0 && packet->data[FLAGS] & ANIMATION;
+}
+
 static void read_packet(helio_video_reader *reader)
 {
     reader->log.error[0] = 0;
@@ -256,6 +278,7 @@ static void read_packet(helio_video_reader *reader)
     }
     reader->is_draining = code < 0;
     reader->packets += is_ours;
+    reader->is_webp_animation = reader->is_webp_animation || (is_ours && is_webp_animation(reader));
     if (code < 0)
         avcodec_send_packet(reader->input.codec, NULL);
 }
@@ -279,6 +302,10 @@ static helio_status end(helio_video_reader *reader)
     reader->is_ended = true;
     if (reader->complaint[0] == 0 && reader->frames > 0)
         return HELIO_OK;
+    if (reader->frames == 0 && reader->is_webp_animation)
+        return fail(HELIO_ERR_UNSUPPORTED,
+                    "%s is an animated WebP picture, which the FFmpeg here cannot decode; convert it to PNG or a video",
+                    reader->path);
     if (reader->is_device)
         return fail(HELIO_ERR_IO, "the device %s gave no more than %" PRIu64 " frames: %s", reader->path,
                     reader->frames, reader->complaint[0] != 0 ? reader->complaint : "it has ended");
@@ -315,7 +342,7 @@ static void warn_of_damage(helio_video_reader *reader)
 static helio_status deliver(helio_video_reader *reader, helio_video_frame *out)
 {
     const AVFrame *frame = reader->frame;
-    video_tags tags = frame_tags(frame);
+    video_tags tags = frame_tags(frame, reader->input.stream->codecpar->codec_id);
     video_colour colour;
     video_turn turn;
     helio_video_frame result = {0};
