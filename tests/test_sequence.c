@@ -903,7 +903,7 @@ static void test_day_is_what_lights_without_options(void **state)
 static void test_quiet_sequence_says_nothing(void **state)
 {
     (void)state;
-    skip_without(NEEDS_RENDERER);
+    skip_without(NEEDS_RENDERER | NEEDS_PNG);
     write_maps(0, 2);
     succeeds(SMALL "--env in_%04d.pfm --out out_%04d.pfm --contact-sheet sheet.png -q");
     assert_string_equal(program_out, "");
