@@ -6,13 +6,13 @@
 #include "machine.h"
 #include "map_converter.h"
 #include "message.h"
+#include "output_file.h"
 #include "progress.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 
 typedef struct convert_job {
     convert_plan plan;
@@ -74,17 +74,11 @@ static void warn_of_lost_range(convert_job *job, const map_shape *shape, float e
                     job->path, 100.0 * (double)lost / (double)pixels);
 }
 
-static bool has_extension(const char *path, const char *extension)
-{
-    const char *dot = strrchr(path, '.');
-    return dot != NULL && strcasecmp(dot, extension) == 0;
-}
-
 /* PFM and PNG have no place for the layout's name. Once is enough here too. */
 static void warn_of_lost_layout(convert_job *job, const map_shape *shape)
 {
     helio_layout guessed;
-    bool is_kept = !has_extension(job->path, ".pfm") && !has_extension(job->path, ".png");
+    bool is_kept = !output_file_has_extension(job->path, "pfm") && !output_file_has_extension(job->path, "png");
     if (is_kept || job->told_of_layout || shape->layout == HELIO_LAYOUT_FACES ||
         (shape->width == 1 && shape->height == 1))
         return;

@@ -63,22 +63,13 @@ static void thin_out(contact_sheet *sheet)
 
 /* ---- thumbnails -------------------------------------------------------------------------- */
 
-static float clamp(float value, float greatest)
-{
-    return value > 0 ? (value < greatest ? value : greatest) : 0;
-}
-
 /* As PNG and video show it, before the sRGB curve. Adds it to a sum. */
 static void add_shown(const float *pixel, const contact_sheet_picture *picture, double sum[3])
 {
-    const float much = 1e30F;
-    float factor = exp2f(picture->exposure), rgb[3];
+    float shown[3];
+    helio_tonemap_apply(picture->tonemap, picture->exposure, pixel, shown);
     for (int c = 0; c < 3; c++)
-        rgb[c] = clamp(pixel[c] * factor, much);
-    float luminance = 0.2126F * rgb[0] + 0.7152F * rgb[1] + 0.0722F * rgb[2];
-    float divisor = picture->tonemap == HELIO_TONEMAP_REINHARD ? 1 + luminance : 1;
-    for (int c = 0; c < 3; c++)
-        sum[c] += (double)clamp(rgb[c] / divisor, 1);
+        sum[c] += (double)shown[c];
 }
 
 /* The mean of the pixels of columns[0] ... columns[1] - 1, rows likewise. */

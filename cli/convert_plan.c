@@ -9,14 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
-
-static bool has_extension(const char *path, const char *extension)
-{
-    const char *dot = strrchr(path, '.');
-    return dot != NULL && strcasecmp(dot + 1, extension) == 0;
-}
 
 /* A folder, or a name with %s, can only mean six faces. */
 static bool names_faces(const char *path)
@@ -59,7 +52,7 @@ static int check_output(convert_plan *plan)
     if (helio_map_check_path(plan->is_numbered ? name : out, is_faces ? HELIO_LAYOUT_FACES : HELIO_LAYOUT_LATLONG) !=
         HELIO_OK)
         return message_usage("--out: %s", helio_last_error());
-    plan->is_png = has_extension(out, "png");
+    plan->is_png = output_file_has_extension(out, "png");
     return EXIT_CODE_OK;
 }
 
@@ -87,7 +80,7 @@ static void warn_of_idle_options(const convert_plan *plan)
 {
     const cli_options *options = plan->options;
     const char *out = options->convert.out;
-    bool is_exr = has_extension(out, "exr") || names_faces(out);
+    bool is_exr = output_file_has_extension(out, "exr") || names_faces(out);
     if (options->convert.half && !is_exr)
         message_warning("--half changes nothing in %s, which is no EXR", out);
     if ((options->convert.exposure != 0 || plan->write.tonemap != HELIO_TONEMAP_CLIP) && !plan->is_png)

@@ -36,20 +36,30 @@ helio_status input_source_context(const cli_options *options, frame_warnings *wa
     return helio_context_create(&desc, context);
 }
 
-int input_source_open(const cli_options *options, helio_context *context, helio_source **source)
+int input_source_describe(const cli_options *options, helio_source_desc *desc)
 {
-    helio_source_desc desc = {
+    *desc = (helio_source_desc){
         .has_frames = options->frames.is_given,
         .first = options->frames.first,
         .last = options->frames.last,
+        .fps = options->fps,
         .frames = options->day_frames,
         .max_pixels = options->max_pixels,
     };
     /* The words of the table are the library's own, so that these fail only if a build of the library knows fewer. */
-    if (helio_layout_parse(options->layout, &desc.layout) != HELIO_OK ||
-        helio_transfer_parse(options->transfer, &desc.transfer) != HELIO_OK ||
-        helio_on_missing_parse(options->on_missing, &desc.on_missing) != HELIO_OK)
+    if (helio_layout_parse(options->layout, &desc->layout) != HELIO_OK ||
+        helio_transfer_parse(options->transfer, &desc->transfer) != HELIO_OK ||
+        helio_on_missing_parse(options->on_missing, &desc->on_missing) != HELIO_OK)
         return message_usage("%s", helio_last_error());
+    return EXIT_CODE_OK;
+}
+
+int input_source_open(const cli_options *options, helio_context *context, helio_source **source)
+{
+    helio_source_desc desc;
+    int code = input_source_describe(options, &desc);
+    if (code != EXIT_CODE_OK)
+        return code;
     helio_status status = helio_source_open(context, options->input, &desc, source);
     if (status == HELIO_ERR_ARGUMENT)
         return message_usage("%s", helio_last_error());
@@ -59,12 +69,7 @@ int input_source_open(const cli_options *options, helio_context *context, helio_
 void input_source_warn(frame_warnings *warnings, const char *label, const helio_source_frame *frame,
                        const helio_environment_info *light)
 {
-    uint64_t negative = frame->bad.negative;
-    const stats_frame seen = {
-        .nan = light->bad.nan,
-        .infinite = light->bad.infinite,
-        .negative = negative,
-        .out_of_gamut = light->bad.negative > negative ? light->bad.negative - negative : 0,
-    };
+    stats_frame seen = {0};
+    stats_note_bad_pixels(&seen, &frame->bad, &light->bad);
     frame_warnings_bad_pixels(warnings, label, &seen);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * input_source.h - the SRC that follows convert and inspect, opened with the options that say how it is read. */
+ * input_source.h - the SRC that a command reads, with the options that say how; and that which follows convert and
+ * inspect. */
 #ifndef HELIOSTAT_CLI_INPUT_SOURCE_H
 #define HELIOSTAT_CLI_INPUT_SOURCE_H
 
@@ -14,6 +15,9 @@ int input_source_check(const cli_options *options, const char *command_name);
 
 /* A context that says warnings on stderr, and with --verbose more. warnings: start from {0}; it lives longer. */
 helio_status input_source_context(const cli_options *options, frame_warnings *warnings, helio_context **context);
+
+/* What the options say of how a source is read. Returns an exit code as above. */
+int input_source_describe(const cli_options *options, helio_source_desc *desc);
 
 /* Returns an exit code as above, EXIT_CODE_FAILED where files are the reason. */
 int input_source_open(const cli_options *options, helio_context *context, helio_source **source);

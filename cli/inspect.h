@@ -92,6 +92,7 @@ typedef struct inspect_subject {
 bool inspect_measure(const inspect_subject *subject, inspect_findings *findings);
 
 /* Parts of the above. */
+double inspect_luminance(const float rgb[3]);
 bool inspect_find_spot(const float *cube, uint32_t size, inspect_findings *findings);
 void inspect_judge(inspect_findings *findings);
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "inspect.h"
+#include "stats.h"
 
 #include "message.h"
 
@@ -7,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static double luminance(const float rgb[3])
+double inspect_luminance(const float rgb[3])
 {
     return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
 }
@@ -111,7 +112,7 @@ static double greatest_of(const float rgb[3])
 
 static void count_range(inspect_findings *found, const float rgb[3])
 {
-    double value = luminance(rgb), channel = greatest_of(rgb);
+    double value = inspect_luminance(rgb), channel = greatest_of(rgb);
     found->least = found->pixels == 0 ? value : fmin(found->least, value);
     found->greatest = fmax(found->greatest, value);
     found->greatest_channel = fmax(found->greatest_channel, channel);
@@ -167,7 +168,7 @@ static void add_texel(inspect_findings *found, int face, uint32_t row, uint32_t 
                       double upper[HISTOGRAM_BINS])
 {
     uint32_t size = found->cube_size;
-    double area = face_solid_angle(size, row, column), value = luminance(rgb), direction[3];
+    double area = face_solid_angle(size, row, column), value = inspect_luminance(rgb), direction[3];
     for (int c = 0; c < 3; c++)
         found->mean[c] += area * (double)rgb[c];
     face_direction(face, (2.0 * column + 1) / size - 1, (2.0 * row + 1) / size - 1, direction);
@@ -220,7 +221,8 @@ static void integrate(const inspect_subject *subject, inspect_findings *found)
 bool inspect_measure(const inspect_subject *subject, inspect_findings *found)
 {
     const helio_source_frame *frame = subject->frame;
-    const helio_bad_pixels *seen = &subject->light->bad;
+    stats_frame pixels = {0};
+    stats_note_bad_pixels(&pixels, &frame->bad, &subject->light->bad);
     *found = (inspect_findings){
         .name = frame->name,
         .file_kind = kind_of(subject),
@@ -231,8 +233,8 @@ bool inspect_measure(const inspect_subject *subject, inspect_findings *found)
         .cube_size = helio_environment_cube_size(subject->environment),
         .is_dynamic = subject->source->is_dynamic,
         .frame = frame->index,
-        .bad = {.nan = seen->nan, .infinite = seen->infinite, .negative = frame->bad.negative},
-        .out_of_gamut = seen->negative > frame->bad.negative ? seen->negative - frame->bad.negative : 0,
+        .bad = {.nan = pixels.nan, .infinite = pixels.infinite, .negative = pixels.negative},
+        .out_of_gamut = pixels.out_of_gamut,
         .exposure = (double)subject->light->auto_exposure,
     };
     count_pixels(subject, found);

@@ -14,7 +14,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 
 /* ---- faces -------------------------------------------------------------------------------- */
@@ -157,18 +156,12 @@ static cairo_status_t write_bytes(void *user, const unsigned char *bytes, unsign
     return CAIRO_STATUS_WRITE_ERROR;
 }
 
-static bool has_extension(const char *path, const char *extension)
-{
-    const char *dot = strrchr(path, '.');
-    return dot != NULL && strcasecmp(dot + 1, extension) == 0;
-}
-
 static cairo_status_t draw_to(picture_stream *stream, const char *path, const inspect_findings *found,
                               const float *cube)
 {
-    bool is_png = has_extension(path, "png");
+    bool is_png = output_file_has_extension(path, "png");
     cairo_surface_t *surface = is_png ? cairo_image_surface_create(CAIRO_FORMAT_RGB24, WIDTH, HEIGHT)
-                               : has_extension(path, "svg")
+                               : output_file_has_extension(path, "svg")
                                    ? cairo_svg_surface_create_for_stream(write_bytes, stream, WIDTH, HEIGHT)
                                    : cairo_pdf_surface_create_for_stream(write_bytes, stream, WIDTH, HEIGHT);
     cairo_t *cairo = cairo_create(surface);
@@ -186,7 +179,8 @@ static cairo_status_t draw_to(picture_stream *stream, const char *path, const in
 
 int inspect_picture_check(const char *path)
 {
-    if (has_extension(path, "png") || has_extension(path, "svg") || has_extension(path, "pdf"))
+    if (output_file_has_extension(path, "png") || output_file_has_extension(path, "svg") ||
+        output_file_has_extension(path, "pdf"))
         return EXIT_CODE_OK;
     return message_usage("--out %s ends in none of .png, .svg and .pdf, which inspect draws", path);
 }

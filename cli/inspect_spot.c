@@ -17,11 +17,6 @@ enum { SPOT_EDGE_COUNT = sizeof SPOT_EDGES / sizeof SPOT_EDGES[0] };
 static const double SPOT_MOST = 0.1;    /* sr: a disc of 20 degrees */
 static const double SPOT_REACH = 0.866; /* cosine of 30 degrees */
 
-static double luminance(const float rgb[3])
-{
-    return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
-}
-
 typedef struct texel_place {
     int face;
     uint32_t row, column;
@@ -72,7 +67,7 @@ static void texel_direction(uint32_t size, size_t texel, double direction[3])
 static bool is_in_spot(const spot_search *search, size_t texel)
 {
     double d[3];
-    if (luminance(search->cube + 3 * texel) < search->edge)
+    if (inspect_luminance(search->cube + 3 * texel) < search->edge)
         return false;
     texel_direction(search->size, texel, d);
     return d[0] * search->middle[0] + d[1] * search->middle[1] + d[2] * search->middle[2] >= SPOT_REACH;
@@ -82,7 +77,7 @@ static void add_light(spot_search *search, size_t texel)
 {
     texel_place at = place_of(search->size, texel);
     double direction[3];
-    double flux = face_solid_angle(search->size, at.row, at.column) * luminance(search->cube + 3 * texel);
+    double flux = face_solid_angle(search->size, at.row, at.column) * inspect_luminance(search->cube + 3 * texel);
     texel_direction(search->size, texel, direction);
     for (int i = 0; i < 3; i++)
         search->light[i] += flux * direction[i];
@@ -117,7 +112,7 @@ static void grow(spot_search *search, size_t brightest)
 /* With an edge that keeps the spot small, if there is one. */
 static void grow_as_needed(spot_search *search, size_t brightest, inspect_spot *spot)
 {
-    double greatest = luminance(search->cube + 3 * brightest);
+    double greatest = inspect_luminance(search->cube + 3 * brightest);
     texel_direction(search->size, brightest, search->middle);
     for (int i = 0; i < SPOT_EDGE_COUNT && (i == 0 || search->area > SPOT_MOST); i++) {
         spot->edge = SPOT_EDGES[i];
@@ -134,7 +129,7 @@ static size_t find_brightest(const float *cube, size_t texels)
 {
     size_t brightest = 0;
     for (size_t i = 1; i < texels; i++)
-        if (luminance(cube + 3 * i) > luminance(cube + 3 * brightest))
+        if (inspect_luminance(cube + 3 * i) > inspect_luminance(cube + 3 * brightest))
             brightest = i;
     return brightest;
 }
@@ -153,7 +148,7 @@ static void describe(const spot_search *search, size_t brightest, inspect_findin
         spot->azimuth += 360;
     spot->elevation = asin(fmax(fmin(d[1], 1), -1)) * degrees;
     spot->solid_angle = search->area;
-    spot->luminance = luminance(search->cube + 3 * brightest);
+    spot->luminance = inspect_luminance(search->cube + 3 * brightest);
     spot->share = found->all_flux > 0 ? fmin(search->flux / found->all_flux, 1) : 0;
     spot->irradiance_share = found->irradiance > 0 ? fmin(search->irradiance / found->irradiance, 1) : 0;
 }
@@ -161,7 +156,7 @@ static void describe(const spot_search *search, size_t brightest, inspect_findin
 bool inspect_find_spot(const float *cube, uint32_t size, inspect_findings *found)
 {
     size_t texels = FACE_COUNT * (size_t)size * size, brightest = find_brightest(cube, texels);
-    double greatest = luminance(cube + 3 * brightest);
+    double greatest = inspect_luminance(cube + 3 * brightest);
     found->has_spot = greatest > SPOT_CONTRAST * found->mean_luminance;
     if (!found->has_spot)
         return true;

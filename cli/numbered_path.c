@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "numbered_path.h"
 
+#include "output_file.h"
+
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,8 +14,7 @@ static const unsigned MOST_DIGITS = 19;
 /* Folders may have any name. */
 static const char *last_part(const char *path)
 {
-    const char *slash = strrchr(path, '/');
-    return slash != NULL ? slash + 1 : path;
+    return path + output_file_folder_length(path);
 }
 
 bool numbered_path_is_pattern(const char *path)

@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -16,6 +17,12 @@ static bool is_same_file(const char *input, const struct stat *output)
     struct stat status;
     return input[0] != 0 && stat(input, &status) == 0 && status.st_dev == output->st_dev &&
            status.st_ino == output->st_ino;
+}
+
+bool output_file_has_extension(const char *path, const char *extension)
+{
+    const char *dot = strrchr(path, '.');
+    return dot != NULL && strcasecmp(dot + 1, extension) == 0;
 }
 
 size_t output_file_folder_length(const char *path)

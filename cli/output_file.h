@@ -16,6 +16,9 @@ int output_file_check(const char *option, const char *path, helio_source *source
 bool output_file_is_same(const char *path, const char *other_path);
 bool output_file_is_same_folder(const char *path, const char *other_path);
 
+/* Does path end in ".extension", in any case? */
+bool output_file_has_extension(const char *path, const char *extension);
+
 /* Length of the part up to the last slash, the slash included. */
 size_t output_file_folder_length(const char *path);
 

@@ -9,7 +9,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 
 static const char PICTURE_OUT[] = "heliostat.png", NUMBERED_OUT[] = "heliostat_%04d.png";
@@ -17,12 +16,6 @@ static const char PICTURE_OUT[] = "heliostat.png", NUMBERED_OUT[] = "heliostat_%
 static bool is(const char *value, const char *word)
 {
     return strcmp(value, word) == 0;
-}
-
-static bool has_extension(const char *path, const char *extension)
-{
-    const char *dot = strrchr(path, '.');
-    return dot != NULL && strcasecmp(dot + 1, extension) == 0;
 }
 
 static int check_pattern(const render_plan *plan)
@@ -110,7 +103,7 @@ static int check_files(const render_plan *plan)
     helio_status status = plan->sink != SINK_VIDEO ? helio_picture_check_path(out) : HELIO_OK;
     if (status != HELIO_OK)
         return fail_with_ending(plan, out, status);
-    if (options->aovs && !has_extension(out, "exr"))
+    if (options->aovs && !output_file_has_extension(out, "exr"))
         return message_usage("--aovs writes layers, which only EXR holds; give --out a name that ends in .exr, not %s",
                              out);
     if (options->stats != NULL && is(options->stats, out))
@@ -123,7 +116,7 @@ static int check_contact_sheet(const cli_options *options)
     const char *sheet = options->contact_sheet;
     if (sheet == NULL)
         return EXIT_CODE_OK;
-    if (!has_extension(sheet, "png") || helio_picture_check_path(sheet) != HELIO_OK)
+    if (!output_file_has_extension(sheet, "png") || helio_picture_check_path(sheet) != HELIO_OK)
         return message_usage("--contact-sheet writes a PNG; give it a name that ends in .png, not %s", sheet);
     if ((options->out != NULL && is(options->out, sheet)) || (options->stats != NULL && is(options->stats, sheet)))
         return message_usage("--contact-sheet and another option both name %s; give two files", sheet);
@@ -146,11 +139,11 @@ int output_plan_check(render_plan *plan)
 void output_plan_warn(const render_plan *plan)
 {
     const cli_options *options = plan->options;
-    bool is_video = plan->sink == SINK_VIDEO, is_shown = is_video || has_extension(plan->out, "png");
+    bool is_video = plan->sink == SINK_VIDEO, is_shown = is_video || output_file_has_extension(plan->out, "png");
     bool has_exposure = !isnan(options->exposure) || plan->tonemap != HELIO_TONEMAP_CLIP;
     if (has_exposure && !is_shown && options->contact_sheet == NULL)
         message_warning("--exposure and --tonemap change nothing in %s: EXR and PFM hold radiance as it is", plan->out);
-    if (plan->alpha && (is_video || has_extension(plan->out, "pfm")))
+    if (plan->alpha && (is_video || output_file_has_extension(plan->out, "pfm")))
         message_warning("%s cannot hold the alpha channel of this picture; EXR and PNG can", plan->out);
     if ((options->codec != NULL || options->quality > 0 || options->hdr) && !is_video)
         message_warning("--codec, --quality and --hdr change nothing in %s, which is no video", plan->out);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "render_job.h"
 
+#include "input_source.h"
 #include "interrupt.h"
 #include "machine.h"
 #include "message.h"
@@ -8,27 +9,11 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-static void print_log(void *user, helio_log_level level, const char *message)
-{
-    render_job *job = user;
-    if (level <= HELIO_LOG_WARNING)
-        frame_warnings_log(&job->warnings, message);
-    else
-        message_note("%s", message);
-}
-
 /* ---- opening ---------------------------------------------------------------------------- */
 
 static helio_status open_context(render_job *job)
 {
-    const cli_options *options = job->plan.options;
-    const helio_context_desc desc = {
-        .threads = options->threads,
-        .log_level = options->verbose ? HELIO_LOG_INFO : HELIO_LOG_WARNING,
-        .log = print_log,
-        .user = job,
-    };
-    return helio_context_create(&desc, &job->context);
+    return input_source_context(job->plan.options, &job->warnings, &job->context);
 }
 
 static helio_status open_source(render_job *job)
@@ -124,7 +109,7 @@ int render_job_open(render_job *job, const cli_options *options)
 {
     static helio_status (*const sources[])(render_job *) = {open_context, open_source};
     static helio_status (*const scenes[])(render_job *) = {load_scene, make_environment, make_renderer};
-    *job = (render_job){.warnings = {.tells_all = options->verbose}};
+    *job = (render_job){0};
     int code = render_plan_make(&job->plan, options);
     if (code == EXIT_CODE_OK)
         code = run_steps(job, sources, sizeof sources / sizeof sources[0]);
@@ -159,13 +144,9 @@ helio_status render_job_next(render_job *job, helio_source_frame *frame, stats_f
     return status;
 }
 
-/* What was negative in the file, and what colour conversion made so. */
-static void note_light(stats_frame *stats, const helio_environment_info *light, const helio_bad_pixels *in_file)
+static void note_light(stats_frame *stats, const helio_environment_info *light, const helio_bad_pixels *stored)
 {
-    stats->nan = light->bad.nan;
-    stats->infinite = light->bad.infinite;
-    stats->negative = in_file->negative;
-    stats->out_of_gamut = light->bad.negative > in_file->negative ? light->bad.negative - in_file->negative : 0;
+    stats_note_bad_pixels(stats, stored, &light->bad);
     for (int face = 0; face < 6; face++)
         stats->flux += light->flux[face];
 }

@@ -2,6 +2,7 @@
 #include "render_plan.h"
 
 #include "asset.h"
+#include "input_source.h"
 #include "message.h"
 #include "output_plan.h"
 
@@ -27,10 +28,7 @@ float render_plan_aspect(const render_plan *plan)
 static int parse_words(render_plan *plan)
 {
     const cli_options *options = plan->options;
-    if (helio_layout_parse(options->layout, &plan->source.layout) != HELIO_OK ||
-        helio_transfer_parse(options->transfer, &plan->source.transfer) != HELIO_OK ||
-        helio_on_missing_parse(options->on_missing, &plan->source.on_missing) != HELIO_OK ||
-        helio_strategy_parse(options->strategy, &plan->strategy) != HELIO_OK ||
+    if (helio_strategy_parse(options->strategy, &plan->strategy) != HELIO_OK ||
         helio_weighting_parse(options->weighting, &plan->weighting) != HELIO_OK ||
         helio_ground_parse(options->ground, &plan->ground) != HELIO_OK ||
         helio_tonemap_parse(options->tonemap, &plan->tonemap) != HELIO_OK)
@@ -66,13 +64,8 @@ static int choose_light(render_plan *plan)
 {
     const cli_options *options = plan->options;
     bool may_be_sequence = options->out == NULL || plan->sink != SINK_PICTURE;
-    plan->source.has_frames = options->frames.is_given;
-    plan->source.first = options->frames.first;
-    plan->source.last = options->frames.last;
-    plan->source.fps = options->fps;
-    plan->source.frames = options->day_frames;
-    plan->source.max_pixels = options->max_pixels;
-    return light_source_choose(options->env, may_be_sequence, &plan->light);
+    int code = input_source_describe(options, &plan->source);
+    return code != EXIT_CODE_OK ? code : light_source_choose(options->env, may_be_sequence, &plan->light);
 }
 
 static int check_program(const cli_options *options)

@@ -7,6 +7,14 @@
 #include <math.h>
 #include <stdlib.h>
 
+void stats_note_bad_pixels(stats_frame *frame, const helio_bad_pixels *stored, const helio_bad_pixels *seen)
+{
+    frame->nan = seen->nan;
+    frame->infinite = seen->infinite;
+    frame->negative = stored->negative;
+    frame->out_of_gamut = seen->negative > stored->negative ? seen->negative - stored->negative : 0;
+}
+
 static json_t *frame_object(const stats_frame *frame)
 {
     json_t *bad = json_pack("{so so so so}", "nan", json_whole(frame->nan), "inf", json_whole(frame->infinite),

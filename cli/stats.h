@@ -3,6 +3,8 @@
 #ifndef HELIOSTAT_CLI_STATS_H
 #define HELIOSTAT_CLI_STATS_H
 
+#include <heliostat/image.h>
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -19,6 +21,10 @@ typedef struct stats_frame {
     uint64_t out_of_gamut;            /* pixels that became negative when their colours were converted */
     double flux;                      /* of the whole map, before --intensity */
 } stats_frame;
+
+/* stored: as the source has them. seen: by the environment, where what colour conversion made negative has come to
+ * them. */
+void stats_note_bad_pixels(stats_frame *frame, const helio_bad_pixels *stored, const helio_bad_pixels *seen);
 
 typedef struct stats_summary {
     const char *strategy, *isa;

@@ -96,6 +96,10 @@ typedef enum helio_tonemap {
 HELIO_API const char *helio_tonemap_name(helio_tonemap tonemap);
 HELIO_API helio_status helio_tonemap_parse(const char *name, helio_tonemap *tonemap);
 
+/* What a screen shows of linear radiance: exposed (stops), tone-mapped and clipped to 0..1, but still linear. NaN
+ * becomes 0. The two may be the same array. */
+HELIO_API void helio_tonemap_apply(helio_tonemap tonemap, float exposure, const float rgb[3], float shown[3]);
+
 /* A picture to be written. Layers that are NULL are left out. All arrays stay the caller's. */
 typedef struct helio_picture {
     uint32_t width, height;

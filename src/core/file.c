@@ -50,12 +50,6 @@ helio_status file_read(helio_context *context, const char *path, size_t max_byte
     return status;
 }
 
-static int directory_length(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? (int)(slash - path) + 1 : 0;
-}
-
 /* Gives a name to a file that has none. */
 static int link_unnamed(int descriptor, const char *name)
 {
@@ -70,7 +64,7 @@ static int take_name(file_writer *writer, int unnamed)
 {
     for (unsigned attempt = 0; attempt < 1000; attempt++) {
         int length = snprintf(writer->temporary, sizeof writer->temporary, "%.*s.heliostat-%ld-%u",
-                              directory_length(writer->path), writer->path, (long)getpid(), attempt);
+                              file_folder_length(writer->path), writer->path, (long)getpid(), attempt);
         if (length < 0 || (size_t)length >= sizeof writer->temporary) {
             errno = ENAMETOOLONG;
             break;
@@ -91,7 +85,7 @@ static int make_unnamed(const char *path)
 {
 #ifdef O_TMPFILE
     char directory[sizeof((file_writer *)0)->temporary];
-    int length = directory_length(path);
+    int length = file_folder_length(path);
     if ((size_t)length >= sizeof directory)
         return -1;
     snprintf(directory, sizeof directory, "%.*s", length > 0 ? length : 1, length > 0 ? path : ".");
@@ -168,6 +162,12 @@ void file_writer_abandon(file_writer *writer)
         unlink(writer->temporary);
     writer->stream = NULL;
     writer->temporary[0] = 0;
+}
+
+int file_folder_length(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? (int)(slash - path) + 1 : 0;
 }
 
 bool file_has_extension(const char *path, const char *extension)

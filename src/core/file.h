@@ -28,6 +28,9 @@ helio_status file_writer_commit(file_writer *writer);
 /* Gives up: removes the temporary file. Fine after commit or a failed open. */
 void file_writer_abandon(file_writer *writer);
 
+/* Length of the part of a path up to the last slash, the slash included: an int, as printf wants it for %.*s. */
+int file_folder_length(const char *path);
+
 /* Does path end in ".extension", in any case? */
 bool file_has_extension(const char *path, const char *extension);
 

@@ -3,6 +3,7 @@
 
 #include "core/context.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "env/source_names.h"
 #include "image/faces.h"
 
@@ -127,19 +128,13 @@ void source_files_release(helio_context *context, source_files *files)
 
 /* ---- looking up ---- */
 
-static size_t folder_length(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash != NULL ? (size_t)(slash - path) + 1 : 0;
-}
-
 static bool is_same_folder(const char *path, const char *other_path)
 {
     const char *const paths[] = {path, other_path};
     struct stat status[2];
     for (int i = 0; i < 2; i++) {
         char folder[SOURCE_PATH_SIZE + 2];
-        if (snprintf(folder, sizeof folder, "%.*s.", (int)folder_length(paths[i]), paths[i]) >= (int)sizeof folder ||
+        if (snprintf(folder, sizeof folder, "%.*s.", file_folder_length(paths[i]), paths[i]) >= (int)sizeof folder ||
             stat(folder, &status[i]) != 0)
             return false;
     }
@@ -149,7 +144,7 @@ static bool is_same_folder(const char *path, const char *other_path)
 /* A frame that is not there yet would be read all the same once it is. */
 static bool is_frame_name(const source_pattern *pattern, const helio_source_desc *desc, const char *path)
 {
-    const char *part = path + folder_length(path), *before = pattern->before + folder_length(pattern->before);
+    const char *part = path + file_folder_length(path), *before = pattern->before + file_folder_length(pattern->before);
     size_t length = strlen(before);
     char name[SOURCE_PATH_SIZE];
     if (strchr(pattern->after, '/') != NULL || strncmp(part, before, length) != 0)
@@ -157,7 +152,7 @@ static bool is_frame_name(const source_pattern *pattern, const helio_source_desc
     unsigned long long number = strtoull(part + length, NULL, 10);
     bool is_wanted = number <= UINT32_MAX && (!desc->has_frames || (number >= desc->first && number <= desc->last));
     return is_wanted && source_pattern_format(pattern, (uint32_t)number, name) &&
-           strcmp(name + folder_length(name), part) == 0 && is_same_folder(pattern->before, path);
+           strcmp(name + file_folder_length(name), part) == 0 && is_same_folder(pattern->before, path);
 }
 
 bool source_files_has(const source_files *files, const source_specification *specification,

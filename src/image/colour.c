@@ -29,7 +29,7 @@ static void transform(const colour_matrix *a, const double v[3], double out[3])
         out[row] = a->m[row][0] * v[0] + a->m[row][1] * v[1] + a->m[row][2] * v[2];
 }
 
-static colour_matrix multiply(const colour_matrix *a, const colour_matrix *b)
+colour_matrix colour_multiply(const colour_matrix *a, const colour_matrix *b)
 {
     colour_matrix product;
     for (int row = 0; row < 3; row++)
@@ -105,7 +105,7 @@ static bool adaptation(const double from[2], const double to[2], colour_matrix *
             scaled.m[row][column] *= to_cone[row] / from_cone[row];
     }
     colour_invert(&BRADFORD, &inverse);
-    *matrix = multiply(&inverse, &scaled);
+    *matrix = colour_multiply(&inverse, &scaled);
     return true;
 }
 
@@ -114,8 +114,8 @@ bool colour_to_rec709(const chromaticities *space, colour_matrix *matrix)
     colour_matrix to_xyz, adapt;
     if (!matrix_to_xyz(space, &to_xyz) || !adaptation(space->white, REC709.white, &adapt))
         return false;
-    colour_matrix adapted = multiply(&adapt, &to_xyz), from_xyz = colour_xyz_to_rec709();
-    *matrix = multiply(&from_xyz, &adapted);
+    colour_matrix adapted = colour_multiply(&adapt, &to_xyz), from_xyz = colour_xyz_to_rec709();
+    *matrix = colour_multiply(&from_xyz, &adapted);
     for (int i = 0; i < 9; i++)
         if (!(fabs(matrix->m[i / 3][i % 3]) < 1e3))
             return false;
@@ -140,10 +140,14 @@ void colour_apply(const colour_matrix *matrix, float *rgb, size_t pixels)
     }
 }
 
+double srgb_to_linear(double encoded)
+{
+    return encoded <= 0.04045 ? encoded / 12.92 : pow((encoded + 0.055) / 1.055, 2.4);
+}
+
 float srgb_decode(float encoded)
 {
-    double value = (double)encoded;
-    return (float)(value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4));
+    return (float)srgb_to_linear((double)encoded);
 }
 
 float srgb_encode(float linear)

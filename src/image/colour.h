@@ -21,6 +21,9 @@ bool colour_is_rec709(const chromaticities *space);
 /* RGB of that space to Rec. 709, white to white by Bradford's adaptation. false if the numbers span no colour space. */
 bool colour_to_rec709(const chromaticities *space, colour_matrix *matrix);
 
+/* a x b */
+colour_matrix colour_multiply(const colour_matrix *a, const colour_matrix *b);
+
 /* false if there is no inverse. */
 bool colour_invert(const colour_matrix *matrix, colour_matrix *inverse);
 
@@ -31,6 +34,7 @@ colour_matrix colour_xyz_to_rec709(void);
 void colour_apply(const colour_matrix *matrix, float *rgb, size_t pixels);
 
 /* The sRGB curve (IEC 61966-2-1) on 0..1. */
+double srgb_to_linear(double encoded);
 float srgb_decode(float encoded);
 float srgb_encode(float linear);
 

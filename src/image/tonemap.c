@@ -33,19 +33,23 @@ static unsigned char to_byte(float value)
     return (unsigned char)(clamp(value, 1) * 255 + 0.5f);
 }
 
-void tonemap_linear(const float rgba[4], const helio_picture_write_desc *desc, float rgb[3])
+void helio_tonemap_apply(helio_tonemap tonemap, float exposure, const float rgb[3], float shown[3])
 {
     const float much = 1e30f; /* a stand-in for infinity that can be divided */
-    float alpha = clamp(rgba[3], 1), factor = exp2f(desc->exposure);
-    for (int c = 0; c < 3; c++) {
-        float colour = rgba[c];
-        if (desc->alpha)
-            colour = alpha > 0 ? colour / alpha : 0;
-        rgb[c] = clamp(colour * factor, much);
-    }
-    float divisor = desc->tonemap == HELIO_TONEMAP_REINHARD ? 1 + luminance(rgb) : 1;
+    float factor = exp2f(exposure);
     for (int c = 0; c < 3; c++)
-        rgb[c] = clamp(rgb[c] / divisor, 1);
+        shown[c] = clamp(rgb[c] * factor, much);
+    float divisor = tonemap == HELIO_TONEMAP_REINHARD ? 1 + luminance(shown) : 1;
+    for (int c = 0; c < 3; c++)
+        shown[c] = clamp(shown[c] / divisor, 1);
+}
+
+void tonemap_linear(const float rgba[4], const helio_picture_write_desc *desc, float rgb[3])
+{
+    float alpha = clamp(rgba[3], 1);
+    for (int c = 0; c < 3; c++)
+        rgb[c] = !desc->alpha ? rgba[c] : alpha > 0 ? rgba[c] / alpha : 0;
+    helio_tonemap_apply(desc->tonemap, desc->exposure, rgb, rgb);
 }
 
 void tonemap_pixel(const float rgba[4], const helio_picture_write_desc *desc, unsigned char *pixel)

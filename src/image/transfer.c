@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "core/name_list.h"
+#include "image/colour.h"
 
 #include <math.h>
 
@@ -66,7 +67,7 @@ double transfer_decode(helio_transfer transfer, double signal)
     if (signal <= 0)
         return 0;
     switch (transfer) {
-    case HELIO_TRANSFER_SRGB: return signal <= 0.04045 ? signal / 12.92 : pow((signal + 0.055) / 1.055, 2.4);
+    case HELIO_TRANSFER_SRGB: return srgb_to_linear(signal);
     case HELIO_TRANSFER_PQ: return pq_decode(signal);
     case HELIO_TRANSFER_HLG: return hlg_decode(signal);
     default: return pow(signal, 2.4); /* BT.1886 with a black of 0 */

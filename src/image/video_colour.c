@@ -175,14 +175,6 @@ void video_colour_rec709_to_bt2020(colour_matrix *matrix)
     colour_invert(&to_rec709, matrix);
 }
 
-static void multiply(const colour_matrix *a, const colour_matrix *b, float product[3][3])
-{
-    for (int row = 0; row < 3; row++)
-        for (int column = 0; column < 3; column++)
-            product[row][column] = (float)(a->m[row][0] * b->m[0][column] + a->m[row][1] * b->m[1][column] +
-                                           a->m[row][2] * b->m[2][column]);
-}
-
 /* ---- all of it ---- */
 
 static const char *text_or_unknown(const char *text)
@@ -218,6 +210,8 @@ helio_status video_colour_resolve(const char *path, const video_tags *tags, heli
     *colour = (video_colour){.transfer = transfer, .is_rgb = is_rgb};
     colour->is_rec709 = primaries == AVCOL_PRI_BT709 && !is_ictcp;
     combine(format, is_full_range(tags, is_rgb), is_rgb, &matrix, colour->signal);
-    multiply(&to_rec709, is_ictcp ? &LMS_TO_BT2020 : &IDENTITY, colour->rec709);
+    to_rec709 = colour_multiply(&to_rec709, is_ictcp ? &LMS_TO_BT2020 : &IDENTITY);
+    for (int i = 0; i < 9; i++)
+        colour->rec709[i / 3][i % 3] = (float)to_rec709.m[i / 3][i % 3];
     return HELIO_OK;
 }

@@ -76,8 +76,7 @@ static const char *last_part(const char *name)
 /* The file that a name means. It may have been written under Windows, or as a URI. */
 static helio_status find_file(const char *mesh_path, const char *name, char path[PATH_SIZE])
 {
-    const char *slash = strrchr(mesh_path, '/');
-    int folder = slash ? (int)(slash - mesh_path) + 1 : 0;
+    int folder = file_folder_length(mesh_path);
     bool absolute = name[0] == '/' || name[0] == '\\' || (isalpha((unsigned char)name[0]) && name[1] == ':');
     int length = snprintf(path, PATH_SIZE, "%.*s%s", folder, mesh_path, absolute ? last_part(name) : name);
     if (length < 0 || length >= PATH_SIZE)
