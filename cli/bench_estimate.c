@@ -11,8 +11,10 @@
 #include <math.h>
 #include <stdatomic.h>
 #include <stdio.h>
+#include <string.h>
 
 enum { POINTS = 2048, PIECE = 32 /* points that a thread takes at a time */ };
+_Static_assert(POINTS % PIECE == 0, "pieces are whole");
 
 typedef struct estimate_work {
     const bench_material *material;
@@ -54,13 +56,17 @@ static void make_point(const helio_material *material, uint32_t i, helio_shading
 
 /* ---- work ----------------------------------------------------------------------------- */
 
-static helio_status estimate_one(const estimate_work *work, uint32_t i)
+static helio_status estimate_piece(const estimate_work *work, uint32_t first)
 {
-    float radiance[3];
+    float radiance[PIECE][3];
+    helio_shading_point points[PIECE];
     helio_status status = HELIO_OK;
-    helio_shading_point point = work->points[i];
-    for (uint32_t call = 0; status == HELIO_OK && call < work->calls; call++, point.seed++)
-        status = helio_estimate(work->pools, &point, &work->desc, radiance, NULL);
+    memcpy(points, work->points + first, sizeof points);
+    for (uint32_t call = 0; status == HELIO_OK && call < work->calls; call++) {
+        status = helio_estimate_points(work->pools, PIECE, points, &work->desc, radiance, NULL);
+        for (uint32_t i = 0; i < PIECE; i++)
+            points[i].seed++;
+    }
     return status;
 }
 
@@ -71,9 +77,8 @@ static void estimate_pieces(void *data, uint32_t index, uint32_t threads)
     (void)threads;
     for (;;) {
         uint32_t first = atomic_fetch_add_explicit(&work->next, PIECE, memory_order_relaxed);
-        for (uint32_t i = first; i < first + PIECE; i++)
-            if (i >= POINTS || interrupt_signal() != 0 || estimate_one(work, i) != HELIO_OK)
-                return;
+        if (first >= POINTS || interrupt_signal() != 0 || estimate_piece(work, first) != HELIO_OK)
+            return;
     }
 }
 
@@ -105,7 +110,7 @@ static int make_pools(const bench_point *point, estimate_work *work)
     if (status != HELIO_OK)
         return bench_check(status);
     divide_samples(work, point->spp);
-    return bench_check(estimate_one(work, 0)); /* other threads could not tell what is wrong */
+    return bench_check(estimate_piece(work, 0)); /* other threads could not tell what is wrong */
 }
 
 static int create(bench *b, const bench_point *point, void *data, bench_job *jobs)

@@ -4,13 +4,19 @@
 
 set(KERNEL_SOURCES
     src/cpu/background_kernel.c src/env/exposure_kernel.c src/env/fault_kernel.c src/env/resampling_kernel.c
-    src/env/sky_kernel.c src/sampling/pools_kernel.c src/sampling/set_kernel.c src/sampling/surface_kernel.c
+    src/env/sky_kernel.c src/sampling/light_kernel.c src/sampling/points_kernel.c src/sampling/pools_kernel.c
+    src/sampling/set_kernel.c src/sampling/surface_kernel.c
     src/sampling/tables_kernel.c src/sampling/weigh_kernel.c)
 set(KERNEL_OBJECTS "")
 set(KERNEL_ISAS "")
 
 # Only where rounding may differ from machine to machine; drawing and tables have the same bits everywhere.
-set_source_files_properties(src/sampling/weigh_kernel.c PROPERTIES COMPILE_OPTIONS -ffp-contract=fast)
+set_source_files_properties(src/sampling/light_kernel.c src/sampling/weigh_kernel.c PROPERTIES COMPILE_OPTIONS -ffp-contract=fast)
+
+# Pools and points hold finite numbers: a greater-of becomes one instruction. No calls of memset for arrays of a few
+# registers, and loops over the lanes of a register stay loops until they are made into vectors.
+set_property(SOURCE src/sampling/light_kernel.c APPEND PROPERTY COMPILE_OPTIONS -ffinite-math-only
+             $<$<C_COMPILER_ID:GNU>:-fno-tree-loop-distribute-patterns -fno-loop-unroll-and-jam>)
 
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
     target_compile_definitions(helio_flags INTERFACE HELIO_KERNELS_X86)

@@ -5,6 +5,8 @@
 #include "cpu/renderer.h"
 #include "sampling/estimate.h"
 
+#include <string.h>
+
 /* The shadow catcher stands for any matte ground, so its own colour does not matter. */
 static const helio_material catcher_material = {.kind = HELIO_MATERIAL_DIFFUSE, .diffuse = {1, 1, 1}};
 
@@ -84,92 +86,20 @@ static void add_estimate(hit_kind kind, const estimate_result *result, double we
 
 /* What is known of the pixels of one row of a tile before their light. */
 typedef struct pixel_row {
-    size_t first;                                                  /* pixel of the picture */
+    size_t first; /* pixel of the picture */
+    uint32_t count;
     const uint8_t *kinds;                                          /* of hit_kind */
     float direction_x[TILE], direction_y[TILE], direction_z[TILE]; /* of the camera rays, if any hit something */
     float background[TILE][4];                                     /* behind those that it may be seen through */
 } pixel_row;
 
-static void light_pixel(const struct frame *frame, const pixel_row *row, uint32_t i, helio_shading_point *point,
-                        estimate_result *result, frame_counts *counts)
-{
-    vec3 direction = {row->direction_x[i], row->direction_y[i], row->direction_z[i]};
-    make_point(frame, row->first + i, direction, point);
-    estimate_point(frame->renderer->pools, point, &frame->estimate, result);
-    counts->samples += result->info.samples;
-    counts->useful += result->info.useful;
-    counts->rays += result->info.rays;
-    counts->points += frame->step.part == 0;
-}
-
-static void add_step(const struct frame *frame, const pixel_row *row, uint32_t i, film_pixel *pixel,
-                     frame_counts *counts)
-{
-    hit_kind kind = row->kinds[i];
-    double weight = frame->step.samples;
-    if (kind == HIT_NOTHING) {
-        add_light(row->background[i], weight, pixel->light.rgb);
-        return;
-    }
-    helio_shading_point point;
-    estimate_result result;
-    light_pixel(frame, row, i, &point, &result, counts);
-    add_estimate(kind, &result, weight, &pixel->light);
-    if (kind == HIT_CATCHER)
-        add_light(row->background[i], weight, pixel->light.catcher_background);
-    else if (frame->renderer->film.albedo && frame->step.part == 0)
-        add_surface(frame, &point, &pixel->surface);
-}
-
-static void shade_pixel(const struct frame *frame, const pixel_row *row, uint32_t i, frame_counts *counts)
-{
-    const struct film *film = &frame->renderer->film;
-    film_pixel pixel = {0};
-    if (!frame->step.is_first)
-        film_load(film, row->first + i, &pixel);
-    add_step(frame, row, i, &pixel, counts);
-    if (frame->step.is_last)
-        film_develop(film, row->first + i, &pixel, frame->weight);
-    else
-        film_store(film, row->first + i, &pixel);
-}
-
-/* The same without sums, see is_simple(). */
-static void shade_pixel_at_once(const struct frame *frame, const pixel_row *row, uint32_t i, frame_counts *counts)
-{
-    const struct film *film = &frame->renderer->film;
-    if (row->kinds[i] == HIT_NOTHING) {
-        film_put_background(film, row->first + i, 1, row->background[i]);
-        return;
-    }
-    helio_shading_point point;
-    estimate_result result;
-    light_pixel(frame, row, i, &point, &result, counts);
-    const float rgba[4] = {result.visible[0], result.visible[1], result.visible[2], 1.0f};
-    film_put(film, row->first + i, rgba, row->kinds[i] == HIT_OBJECT ? 1.0f : 0.0f);
-}
-
-/* ---- tiles ---- */
-
-/* Returns how many of the pixels hit something. */
-static uint32_t find_row(const struct frame *frame, uint32_t y, struct tile tile, pixel_row *row)
-{
-    const helio_renderer *renderer = frame->renderer;
-    uint32_t count = tile.x1 - tile.x0, hit_count = 0, open_count = 0;
-    float position_x[TILE], position_y[TILE];
-    row->first = (size_t)y * renderer->film.width + tile.x0;
-    row->kinds = renderer->hits.kinds + row->first;
-    for (uint32_t i = 0; i < count; i++) {
-        hit_count += row->kinds[i] != HIT_NOTHING;
-        open_count += row->kinds[i] == HIT_NOTHING || row->kinds[i] == HIT_CATCHER;
-    }
-    primary_positions(frame, y, tile.x0, count, position_x, position_y);
-    if (hit_count > 0)
-        primary_directions(frame, count, position_x, position_y, row->direction_x, row->direction_y, row->direction_z);
-    if (open_count > 0 && renderer->film.shows_background)
-        background_fill(&frame->background, count, position_x, position_y, row->background);
-    return hit_count;
-}
+/* Pixels of a tile that hit something, gathered until there are enough to be lit together. */
+typedef struct pixel_queue {
+    uint32_t count;
+    size_t pixels[POINT_BLOCK];
+    float backgrounds[POINT_BLOCK][4]; /* of the shadow catcher */
+    helio_shading_point points[POINT_BLOCK];
+} pixel_queue;
 
 /* One step is the whole frame, and a pixel needs no sums. */
 static bool is_simple(const struct frame *frame)
@@ -179,20 +109,132 @@ static bool is_simple(const struct frame *frame)
            renderer->desc.scene->ground != HELIO_GROUND_SHADOW;
 }
 
+static void load_pixel(const struct frame *frame, size_t index, film_pixel *pixel)
+{
+    *pixel = (film_pixel){0};
+    if (!frame->step.is_first)
+        film_load(&frame->renderer->film, index, pixel);
+}
+
+static void store_pixel(const struct frame *frame, size_t index, const film_pixel *pixel)
+{
+    if (frame->step.is_last)
+        film_develop(&frame->renderer->film, index, pixel, frame->weight);
+    else
+        film_store(&frame->renderer->film, index, pixel);
+}
+
+static void put_background(const struct frame *frame, size_t index, const float rgba[4])
+{
+    film_pixel pixel;
+    load_pixel(frame, index, &pixel);
+    add_light(rgba, frame->step.samples, pixel.light.rgb);
+    store_pixel(frame, index, &pixel);
+}
+
+static void add_pixel(const struct frame *frame, const pixel_queue *queue, uint32_t i, const estimate_result *result)
+{
+    const size_t index = queue->pixels[i];
+    const double weight = frame->step.samples;
+    hit_kind kind = frame->renderer->hits.kinds[index];
+    film_pixel pixel;
+    load_pixel(frame, index, &pixel);
+    add_estimate(kind, result, weight, &pixel.light);
+    if (kind == HIT_CATCHER)
+        add_light(queue->backgrounds[i], weight, pixel.light.catcher_background);
+    else if (frame->renderer->film.albedo && frame->step.part == 0)
+        add_surface(frame, &queue->points[i], &pixel.surface);
+    store_pixel(frame, index, &pixel);
+}
+
+/* The same without sums, see is_simple(). */
+static void put_pixel(const struct frame *frame, const pixel_queue *queue, uint32_t i, const estimate_result *result)
+{
+    const size_t index = queue->pixels[i];
+    const float rgba[4] = {result->visible[0], result->visible[1], result->visible[2], 1.0f};
+    film_put(&frame->renderer->film, index, rgba, frame->renderer->hits.kinds[index] == HIT_OBJECT ? 1.0f : 0.0f);
+}
+
+/* ---- tiles ---- */
+
+static void light_queue(const struct frame *frame, pixel_queue *queue, frame_counts *counts)
+{
+    estimate_result results[POINT_BLOCK];
+    if (queue->count == 0)
+        return;
+    bool simple = is_simple(frame);
+    estimate_points(frame->renderer->pools, queue->count, queue->points, &frame->estimate, results);
+    for (uint32_t i = 0; i < queue->count; i++) {
+        counts->samples += results[i].info.samples;
+        counts->useful += results[i].info.useful;
+        counts->rays += results[i].info.rays;
+        if (simple)
+            put_pixel(frame, queue, i, &results[i]);
+        else
+            add_pixel(frame, queue, i, &results[i]);
+    }
+    counts->points += frame->step.part == 0 ? queue->count : 0;
+    queue->count = 0;
+}
+
+/* Returns how many of the pixels hit something. */
+static uint32_t find_row(const struct frame *frame, uint32_t y, struct tile tile, pixel_row *row)
+{
+    const helio_renderer *renderer = frame->renderer;
+    uint32_t hit_count = 0, open_count = 0;
+    float position_x[TILE], position_y[TILE];
+    row->first = (size_t)y * renderer->film.width + tile.x0;
+    row->count = tile.x1 - tile.x0;
+    row->kinds = renderer->hits.kinds + row->first;
+    for (uint32_t i = 0; i < row->count; i++) {
+        hit_count += row->kinds[i] != HIT_NOTHING;
+        open_count += row->kinds[i] == HIT_NOTHING || row->kinds[i] == HIT_CATCHER;
+    }
+    primary_positions(frame, y, tile.x0, row->count, position_x, position_y);
+    if (hit_count > 0)
+        primary_directions(frame, row->count, position_x, position_y, row->direction_x, row->direction_y,
+                           row->direction_z);
+    if (open_count > 0 && renderer->film.shows_background)
+        background_fill(&frame->background, row->count, position_x, position_y, row->background);
+    return hit_count;
+}
+
+static void queue_pixel(const struct frame *frame, const pixel_row *row, uint32_t i, pixel_queue *queue,
+                        frame_counts *counts)
+{
+    if (queue->count == POINT_BLOCK)
+        light_queue(frame, queue, counts);
+    uint32_t k = queue->count++;
+    vec3 direction = {row->direction_x[i], row->direction_y[i], row->direction_z[i]};
+    queue->pixels[k] = row->first + i;
+    make_point(frame, row->first + i, direction, &queue->points[k]);
+    if (row->kinds[i] == HIT_CATCHER)
+        memcpy(queue->backgrounds[k], row->background[i], sizeof queue->backgrounds[k]);
+}
+
+static void shade_row(const struct frame *frame, const pixel_row *row, pixel_queue *queue, frame_counts *counts)
+{
+    bool simple = is_simple(frame);
+    for (uint32_t i = 0; i < row->count; i++)
+        if (row->kinds[i] != HIT_NOTHING)
+            queue_pixel(frame, row, i, queue, counts);
+        else if (simple)
+            film_put_background(&frame->renderer->film, row->first + i, 1, row->background[i]);
+        else
+            put_background(frame, row->first + i, row->background[i]);
+}
+
 void shade_tile(const struct frame *frame, struct tile tile, frame_counts *counts)
 {
     bool simple = is_simple(frame);
-    uint32_t count = tile.x1 - tile.x0;
     pixel_row row = {0}; /* the background is black and clear where it is not shown */
+    pixel_queue queue;
+    queue.count = 0;
     for (uint32_t y = tile.y0; y < tile.y1; y++) {
-        uint32_t hit_count = find_row(frame, y, tile, &row);
-        if (simple && hit_count == 0)
-            film_put_background(&frame->renderer->film, row.first, count, row.background[0]);
-        else if (simple)
-            for (uint32_t i = 0; i < count; i++)
-                shade_pixel_at_once(frame, &row, i, counts);
+        if (find_row(frame, y, tile, &row) == 0 && simple)
+            film_put_background(&frame->renderer->film, row.first, row.count, row.background[0]);
         else
-            for (uint32_t i = 0; i < count; i++)
-                shade_pixel(frame, &row, i, counts);
+            shade_row(frame, &row, &queue, counts);
     }
+    light_queue(frame, &queue, counts);
 }

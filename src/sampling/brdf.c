@@ -25,13 +25,20 @@ static float share(float part, float other)
     return part + other > 0.0f ? part / (part + other) : 0.0f;
 }
 
+static void prepare_diffuse(brdf *b, const helio_material *material)
+{
+    for (int c = 0; c < 3; c++)
+        b->diffuse[c] = material->diffuse[c];
+    b->colours[0] = scale(vec3_from(b->diffuse), INVERSE_PI);
+}
+
 static void prepare_phong(brdf *b, const helio_material *material)
 {
-    for (int c = 0; c < 3; c++) {
-        b->diffuse[c] = material->diffuse[c];
+    prepare_diffuse(b, material);
+    for (int c = 0; c < 3; c++)
         b->specular[c] = material->specular[c];
-    }
     b->exponent = material->exponent;
+    b->colours[1] = scale(vec3_from(b->specular), (b->exponent + 2.0f) * 0.5f * INVERSE_PI);
     b->mirror = add_scaled(scale(b->normal, 2.0f * b->view_cosine), b->view, -1.0f);
 }
 
@@ -43,6 +50,11 @@ static void prepare_ggx(brdf *b, const helio_material *material)
         b->diffuse[c] = material->diffuse[c] * (1.0f - material->metallic);
         b->specular[c] = DIELECTRIC_REFLECTANCE + (material->diffuse[c] - DIELECTRIC_REFLECTANCE) * material->metallic;
     }
+    vec3 reflected = vec3_from(b->specular), rest = subtract((vec3){1.0f, 1.0f, 1.0f}, reflected);
+    float view_visibility = ggx_visibility(b, b->view_cosine);
+    b->colours[0] = scale((vec3){rest.x * b->diffuse[0], rest.y * b->diffuse[1], rest.z * b->diffuse[2]}, INVERSE_PI);
+    b->colours[1] = scale(reflected, view_visibility);
+    b->colours[2] = scale(rest, view_visibility);
 }
 
 void brdf_prepare_value(brdf *b, const helio_material *material, vec3 normal, vec3 view)
@@ -57,8 +69,7 @@ void brdf_prepare_value(brdf *b, const helio_material *material, vec3 normal, ve
     else if (material->kind == HELIO_MATERIAL_GGX)
         prepare_ggx(b, material);
     else
-        for (int c = 0; c < 3; c++)
-            b->diffuse[c] = material->diffuse[c];
+        prepare_diffuse(b, material);
 }
 
 static float ggx_share(const brdf *b)

@@ -16,17 +16,26 @@
 
 #define INVERSE_PI ((float)(1.0 / PI))
 
+enum { BRDF_LOBES = 3 };
+
+/* A BRDF is a sum over lobes: a colour, which depends on the point alone, times a number that depends on the light. */
 typedef struct brdf {
     helio_material_kind kind;
     vec3 normal, view;
-    float view_cosine;    /* normal . view */
-    vec3 mirror;          /* PHONG: of the view direction */
-    float diffuse[3];     /* albedo of the diffuse lobe */
-    float specular[3];    /* PHONG: ks. GGX: reflectance at normal incidence */
-    float specular_share; /* probability of the specular lobe when sampling */
-    float exponent;       /* PHONG */
-    float alpha2;         /* GGX: alpha^2 */
+    float view_cosine;        /* normal . view */
+    vec3 mirror;              /* PHONG: of the view direction */
+    float diffuse[3];         /* albedo of the diffuse lobe */
+    float specular[3];        /* PHONG: ks. GGX: reflectance at normal incidence */
+    vec3 colours[BRDF_LOBES]; /* of the lobes: red, green, blue; 1/sr times what brdf_lobes() leaves out */
+    float specular_share;     /* probability of the specular lobe when sampling */
+    float exponent;           /* PHONG */
+    float alpha2;             /* GGX: alpha^2 */
 } brdf;
+
+static inline uint32_t brdf_lobe_count(helio_material_kind kind)
+{
+    return kind == HELIO_MATERIAL_GGX ? 3 : kind == HELIO_MATERIAL_PHONG ? 2 : 1;
+}
 
 /* Axes to draw directions about: the normal's, and the mirror direction's for PHONG. */
 typedef struct brdf_axes {
@@ -60,6 +69,21 @@ static inline float phong_lobe(const brdf *b, vec3 light)
     float less = 0.5f * (x * x + y * y + z * z); /* 1 - cos */
     float lobe = exp2_fast(b->exponent * log2_one_minus(less < 0.99999994f ? less : 0.99999994f));
     return less < 1.0f ? lobe : 0.0f;
+}
+
+/* log2 of the same from the cosine itself, with fewer operations: for lobes that are wide, so that its rounding does
+ * not show (relative error of the lobe below 1e-4), and that shine beside a diffuse lobe, as what is behind the mirror
+ * direction gets next to nothing in place of 0. See phong_is_wide(). */
+static inline float phong_lobe_wide_log2(const brdf *b, vec3 light)
+{
+    float cosine = dot(b->mirror, light);
+    return b->exponent * log2_fast(cosine > 0x1p-100f ? cosine : 0x1p-100f);
+}
+
+static inline bool phong_is_wide(const brdf *b)
+{
+    bool is_beside_diffuse = b->colours[0].x + b->colours[0].y + b->colours[0].z > 0.0f;
+    return is_beside_diffuse && b->exponent >= 1.0f && b->exponent <= 512.0f;
 }
 
 static inline vec3 phong_sample(const brdf *b, const brdf_axes *axes, float u, float v)
@@ -137,30 +161,33 @@ static inline vec3 cosine_sample(const brdf *b, const brdf_axes *axes, float u, 
     return add_scaled(add_scaled(scale(axes->tangent, x), axes->bitangent, y), b->normal, height);
 }
 
-static inline float ggx_channel(float diffuse, float normal_reflectance, float weight, float lobe)
+/* The lobes for a light at `light_cosine` >= 0 to the normal, which the view must be above too:
+ *   DIFFUSE  1                                colour kd / pi
+ *   PHONG    1, cos^n                         colours kd / pi, ks (n + 2) / (2 pi)
+ *   GGX      1 - w, D V, D V w                colours (1 - F0) base / pi, F0 V', (1 - F0) V'
+ * with w Schlick's weight, so that F = F0 + (1 - F0) w, and V and V' the visibilities of light and view. Not an array,
+ * which compilers would keep in memory. */
+static inline vec3 brdf_lobes(helio_material_kind kind, const brdf *b, vec3 light, float light_cosine)
 {
-    float fresnel = normal_reflectance + (1.0f - normal_reflectance) * weight;
-    return (1.0f - fresnel) * diffuse * INVERSE_PI + fresnel * lobe;
-}
-
-/* Red, green and blue, 1/sr, for a light above the normal's horizon, as the view must be. Not an array, which compilers
- * would keep in memory. */
-static inline vec3 brdf_value_above(helio_material_kind kind, const brdf *b, vec3 light, float light_cosine)
-{
-    const float *kd = b->diffuse, *ks = b->specular;
     if (kind == HELIO_MATERIAL_GGX) {
         vec3 half = ggx_half(b, light);
         float weight = schlick_weight(dot(b->view, half));
-        float lobe = ggx_distribution(b, half) * ggx_visibility(b, light_cosine) * ggx_visibility(b, b->view_cosine);
-        return (vec3){ggx_channel(kd[0], ks[0], weight, lobe), ggx_channel(kd[1], ks[1], weight, lobe),
-                      ggx_channel(kd[2], ks[2], weight, lobe)};
+        float lobe = ggx_distribution(b, half) * ggx_visibility(b, light_cosine);
+        return (vec3){1.0f - weight, lobe, lobe * weight};
     }
-    if (kind == HELIO_MATERIAL_PHONG) {
-        float lobe = (b->exponent + 2.0f) * 0.5f * INVERSE_PI * phong_lobe(b, light);
-        return (vec3){kd[0] * INVERSE_PI + ks[0] * lobe, kd[1] * INVERSE_PI + ks[1] * lobe,
-                      kd[2] * INVERSE_PI + ks[2] * lobe};
-    }
-    return (vec3){kd[0] * INVERSE_PI, kd[1] * INVERSE_PI, kd[2] * INVERSE_PI};
+    return (vec3){1.0f, kind == HELIO_MATERIAL_PHONG ? phong_lobe(b, light) : 0.0f, 0.0f};
+}
+
+/* Red, green and blue, 1/sr, for the same lights as brdf_lobes(). */
+static inline vec3 brdf_value_above(helio_material_kind kind, const brdf *b, vec3 light, float light_cosine)
+{
+    vec3 lobes = brdf_lobes(kind, b, light, light_cosine);
+    vec3 value = scale(b->colours[0], lobes.x);
+    if (kind != HELIO_MATERIAL_DIFFUSE)
+        value = add_scaled(value, b->colours[1], lobes.y);
+    if (kind == HELIO_MATERIAL_GGX)
+        value = add_scaled(value, b->colours[2], lobes.z);
+    return value;
 }
 
 static inline float brdf_density_of(helio_material_kind kind, const brdf *b, vec3 light)

@@ -39,17 +39,24 @@ static inline float choose(int32_t mask, float a, float b)
     return float_of_bits((bits_of_float(a) & mask) | (bits_of_float(b) & ~mask));
 }
 
-/* 2^x for x <= 127, relative error below 2.5e-7. What would be smaller than 2^-126 becomes 2^-126. */
+/* x where mask is -1, +0 where it is 0, even if x is not a number. */
+static inline float masked(float x, int32_t mask)
+{
+    return float_of_bits(bits_of_float(x) & mask);
+}
+
+/* 2^x for x <= 127, relative error below 2.5e-7. What would be smaller than 2^-100 becomes 2^-100: beside anything else
+ * that is nothing, and products with it are still normal floats, which processors multiply many times as fast. */
 static inline float exp2_fast(float x)
 {
     const float shift = 0x1.8p23f; /* adding it rounds to an integer, which then is in the lowest bits */
-    x = x > -126.0f ? x : -126.0f;
+    x = x > -100.0f ? x : -100.0f;
     float shifted = x + shift;
     float r = x - (shifted - shift), r2 = r * r; /* r: -1/2 ... 1/2 */
     float low = 0.240222424f * r + 0.693147004f, high = 0.00967151299f * r + 0.0555073358f;
     float power = 1.0f + r * (low + r2 * (high + r2 * 0.00132647273f));
-    return float_of_bits(bits_of_float(power) +
-                         (int32_t)((uint32_t)(bits_of_float(shifted) - bits_of_float(shift)) << 23));
+    /* Of shifted the lowest bits alone survive: those of shift itself are gone. */
+    return float_of_bits((int32_t)((uint32_t)bits_of_float(power) + ((uint32_t)bits_of_float(shifted) << 23)));
 }
 
 /* log2(1 - x) for 0 <= x < 1, relative error below 6e-7, however close to 0 x is. */
@@ -64,6 +71,19 @@ static inline float log2_one_minus(float x)
     float p01 = -0.721352816f * f + 1.4426949f, p23 = -0.360239625f * f + 0.480923235f;
     float p45 = -0.248876899f * f + 0.287098706f, p67 = -0.145811409f * f + 0.234042257f;
     return (float)exponent + f * ((p01 + f2 * p23) + (f2 * f2) * (p45 + f2 * p67));
+}
+
+/* log2(x) for normal floats above 0; absolute error below 3e-7 between 1/2 and 2, relative error below 3e-7 elsewhere.
+ */
+static inline float log2_fast(float x)
+{
+    const int32_t root_half = 0x3f3504f3; /* sqrt(1/2) */
+    int32_t bits = bits_of_float(x);
+    int32_t exponent = (bits - root_half) & (int32_t)0xff800000; /* x 2^23 */
+    float f = float_of_bits(bits - exponent) - 1.0f, f2 = f * f;
+    float p01 = -0.721352816f * f + 1.4426949f, p23 = -0.360239625f * f + 0.480923235f;
+    float p45 = -0.248876899f * f + 0.287098706f, p67 = -0.145811409f * f + 0.234042257f;
+    return (float)exponent * 0x1p-23f + f * ((p01 + f2 * p23) + (f2 * f2) * (p45 + f2 * p67));
 }
 
 /* 1 - 2^x for x <= 0, relative error below 3e-7, however close to 0 x is. */

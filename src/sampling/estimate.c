@@ -15,9 +15,6 @@
 enum { DEFAULT_SAMPLES = 64 };
 static const float DEFAULT_BRDF_SHARE = 0.5f;
 
-/* Streams of random numbers of a point. */
-enum { STREAM_ROUNDING = 1, STREAM_SURFACE = 2, STREAM_WINDOW = 3 };
-
 helio_status estimate_check_share(float share)
 {
     if (!(share > 0.0f && share < 1.0f))
@@ -51,46 +48,28 @@ helio_status estimate_resolve(const helio_pools *pools, const helio_estimate_des
     return HELIO_OK;
 }
 
-/* ---- counts ---- */
+/* ---- points side by side ---- */
 
-/* What the pools are worth to a point: beta_f x flux_f for faces. Returns the sum. In double, as the flux of a dark map
- * may be less than a float can hold. */
-static double weigh_pools(const helio_pools *pools, vec3 normal, bool no_beta, double weights[CUBE_FACES])
+/* Counts and windows of the points, and their directions in the map's space. */
+static void prepare_points(const helio_pools *pools, uint32_t count, const helio_shading_point *points,
+                           const helio_estimate_desc *desc, point_block *block)
 {
-    const helio_tables *tables = pools->tables;
-    if (pools->parts.light == STRATEGY_LIGHT_WHOLE)
-        return weights[0] = tables->faces[CUBE_FACES] != 0 ? 1.0 : 0.0;
-    float betas[CUBE_FACES];
-    double total = 0.0;
-    strategy_betas(normal, betas);
-    for (int face = 0; face < CUBE_FACES; face++) {
-        double beta = no_beta && betas[face] > 0.0f ? 1.0 : (double)betas[face];
-        weights[face] = beta * tables->flux[face];
-        total += weights[face];
+    static const helio_shading_point nowhere = {0}; /* what fills up registers */
+    const uint32_t padded = (count + POOL_PADDING - 1) / POOL_PADDING * POOL_PADDING;
+    block->count = count;
+    for (uint32_t i = 0; i < padded; i++) {
+        const helio_shading_point *point = i < count ? &points[i] : &nowhere;
+        point_vector_put(&block->normal, i, vec3_from(point->normal));
+        point_vector_put(&block->geometric_normal, i, vec3_from(point->geometric_normal));
+        point_vector_put(&block->view, i, vec3_from(point->view));
+        block->seed[i] = point->seed;
     }
-    return total;
+    kernels_of(context_isa(pools->tables->environment->context))->prepare_points(pools, desc, block);
 }
 
-/* Expected counts m_k: samples in proportion to beta_f x flux_f, and a fixed share for the surface. All are 0 where no
- * light can come from above the horizon. */
-static void expect_counts(const helio_pools *pools, const helio_estimate_desc *desc, vec3 normal,
-                          float expected[TECHNIQUES])
+static void prepare_surface(const point_block *block, uint32_t i, const helio_material *material, brdf *surface)
 {
-    float samples = (float)desc->samples;
-    double weights[CUBE_FACES] = {0};
-    memset(expected, 0, TECHNIQUES * sizeof *expected);
-    if (pools->count == 0) {
-        expected[TECHNIQUE_SURFACE] = samples;
-        return;
-    }
-    double total = weigh_pools(pools, normal, desc->no_beta, weights);
-    if (!(total > 0.0))
-        return;
-    float by_surface = pools->parts.surface != STRATEGY_SURFACE_NONE ? samples * desc->brdf_share : 0.0f;
-    double share = (double)(samples - by_surface) / total;
-    for (uint32_t k = 0; k < pools->count; k++)
-        expected[k] = (float)(weights[k] * share);
-    expected[TECHNIQUE_SURFACE] = by_surface;
+    brdf_prepare_value(surface, material, point_vector(&block->normal, i), point_vector(&block->view, i));
 }
 
 /* ---- what is known before samples are taken ---- */
@@ -122,25 +101,22 @@ static void begin_surface_samples(gathering *g, uint32_t seed)
     expect_in_faces(g);
 }
 
-static void begin(gathering *g, const helio_pools *pools, const helio_shading_point *point,
-                  const helio_estimate_desc *desc)
+/* For point i of a block that is prepared. */
+static void begin(gathering *g, const helio_pools *pools, const helio_shading_point *point, const point_block *block,
+                  uint32_t i)
 {
-    const helio_environment *environment = pools->tables->environment;
-    vec3 normal = environment_to_map(environment, vec3_from(point->normal));
-    vec3 view = brdf_lift_view(normal, environment_to_map(environment, vec3_from(point->view)));
     g->pools = pools;
-    g->environment = environment;
-    g->geometric_normal = environment_to_map(environment, vec3_from(point->geometric_normal));
-    brdf_prepare_value(&g->surface, &point->material, normal, view);
-    expect_counts(pools, desc, normal, g->counts.expected);
-    strategy_round(g->counts.expected, desc->samples, unit_float(hash_combine(point->seed, STREAM_ROUNDING)),
-                   g->counts.realised);
+    g->environment = pools->tables->environment;
+    g->geometric_normal = point_vector(&block->geometric_normal, i);
+    prepare_surface(block, i, &point->material, &g->surface);
+    for (uint32_t k = 0; k < TECHNIQUES; k++) {
+        g->counts.expected[k] = block->expected[k][i];
+        g->counts.realised[k] = block->realised[k][i];
+    }
+    for (uint32_t k = 0; k < pools->count; k++)
+        g->windows[k] = block->windows[k][i];
     if (g->counts.expected[TECHNIQUE_SURFACE] > 0.0f)
         begin_surface_samples(g, point->seed);
-    uint32_t choice = hash_combine(point->seed, STREAM_WINDOW);
-    for (uint32_t k = 0; k < pools->count; k++)
-        if (g->counts.realised[k] > 0)
-            g->windows[k] = pools_window(pools, g->counts.realised[k], hash_combine(choice, k));
 }
 
 /* ---- samples ---- */
@@ -236,24 +212,57 @@ static void add_sum(float rgb[3], const block_sum *sum)
         rgb[c] += sum->rgb[c];
 }
 
-void estimate_point(const helio_pools *pools, const helio_shading_point *point, const helio_estimate_desc *desc,
-                    estimate_result *result)
+static void estimate_by_blocks(const gathering *g, const kernel_set *kernels, const helio_shading_point *point,
+                               const helio_estimate_desc *desc, estimate_result *result)
 {
-    const kernel_set *kernels = kernels_of(context_isa(pools->tables->environment->context));
-    gathering g;
     sample_block block;
     *result = (estimate_result){0};
-    begin(&g, pools, point, desc);
-    for (sample_cursor cursor = {0}; next_block(&g, kernels, &cursor, &block);) {
+    for (sample_cursor cursor = {0}; next_block(g, kernels, &cursor, &block);) {
         block_sum sum = kernels->sum_block(&block);
         result->info.samples += block.count;
         result->info.useful += sum.useful;
         add_sum(result->unoccluded, &sum);
         if (desc->visibility != NULL && sum.useful > 0) {
-            result->info.rays += cast_shadows(&g, point, desc, &block);
+            result->info.rays += cast_shadows(g, point, desc, &block);
             sum = kernels->sum_block(&block); /* in the same order: what nothing shadows stays the same number */
         }
         add_sum(result->visible, &sum);
+    }
+}
+
+/* Nothing asks for single samples, so that they need no blocks. */
+static void estimate_from_pools(const helio_pools *pools, const helio_shading_point *points, const point_block *block,
+                                estimate_result *results)
+{
+    const helio_environment *environment = pools->tables->environment;
+    brdf surfaces[POINT_BLOCK];
+    block_sum sums[POINT_BLOCK];
+    for (uint32_t i = 0; i < block->count; i++)
+        prepare_surface(block, i, &points[i].material, &surfaces[i]);
+    kernels_of(context_isa(environment->context))->sum_light(pools, block, surfaces, sums);
+    for (uint32_t i = 0; i < block->count; i++) {
+        results[i].info = (helio_estimate_info){.useful = sums[i].useful};
+        for (uint32_t k = 0; k < pools->count; k++)
+            results[i].info.samples += block->realised[k][i];
+        for (int c = 0; c < 3; c++)
+            results[i].visible[c] = results[i].unoccluded[c] = sums[i].rgb[c] * environment->intensity;
+    }
+}
+
+void estimate_points(const helio_pools *pools, uint32_t count, const helio_shading_point *points,
+                     const helio_estimate_desc *desc, estimate_result *results)
+{
+    point_block block;
+    gathering g;
+    prepare_points(pools, count, points, desc, &block);
+    if (pools->parts.surface == STRATEGY_SURFACE_NONE && desc->visibility == NULL) {
+        estimate_from_pools(pools, points, &block, results);
+        return;
+    }
+    const kernel_set *kernels = kernels_of(context_isa(pools->tables->environment->context));
+    for (uint32_t i = 0; i < count; i++) {
+        begin(&g, pools, &points[i], &block, i);
+        estimate_by_blocks(&g, kernels, &points[i], desc, &results[i]);
     }
 }
 
@@ -261,10 +270,11 @@ void estimate_point(const helio_pools *pools, const helio_shading_point *point, 
 
 static helio_status check_unit(const char *name, const float direction[3])
 {
-    float size = length(vec3_from(direction));
-    if (fabsf(size - 1.0f) <= 1e-3f)
+    float square = dot(vec3_from(direction), vec3_from(direction));
+    if (fabsf(square - 1.0f) <= 2e-3f)
         return HELIO_OK;
-    return fail(HELIO_ERR_ARGUMENT, "the %s of a shading point has length %g; give a unit vector", name, (double)size);
+    return fail(HELIO_ERR_ARGUMENT, "the %s of a shading point has length %g; give a unit vector", name,
+                sqrt((double)square));
 }
 
 /* Checks what a caller gives and fills in defaults; the renderer, which makes its points itself, does without. */
@@ -282,20 +292,43 @@ static helio_status resolve_point(const helio_shading_point *given, helio_shadin
     return helio_material_check(&point->material);
 }
 
-helio_status helio_estimate(const helio_pools *pools, const helio_shading_point *given_point,
-                            const helio_estimate_desc *given, float radiance[3], helio_estimate_info *info)
+helio_status helio_estimate(const helio_pools *pools, const helio_shading_point *point, const helio_estimate_desc *desc,
+                            float radiance[3], helio_estimate_info *info)
 {
-    helio_estimate_desc desc;
-    helio_shading_point point;
     if (radiance == NULL)
         return fail(HELIO_ERR_ARGUMENT, "helio_estimate needs a place for the radiance");
+    return helio_estimate_points(pools, 1, point, desc, (float(*)[3])radiance, info);
+}
+
+/* At most POINT_BLOCK of them. */
+static helio_status estimate_checked(const helio_pools *pools, uint32_t count, const helio_shading_point *given,
+                                     const helio_estimate_desc *desc, float (*radiance)[3], helio_estimate_info *infos)
+{
+    helio_shading_point points[POINT_BLOCK];
+    estimate_result results[POINT_BLOCK];
+    for (uint32_t i = 0; i < count; i++)
+        HELIO_TRY(resolve_point(&given[i], &points[i]));
+    estimate_points(pools, count, points, desc, results);
+    for (uint32_t i = 0; i < count; i++) {
+        memcpy(radiance[i], results[i].visible, sizeof radiance[i]);
+        if (infos != NULL)
+            infos[i] = results[i].info;
+    }
+    return HELIO_OK;
+}
+
+helio_status helio_estimate_points(const helio_pools *pools, uint32_t count, const helio_shading_point *points,
+                                   const helio_estimate_desc *given, float (*radiance)[3], helio_estimate_info *infos)
+{
+    helio_estimate_desc desc;
+    if (count > 0 && (points == NULL || radiance == NULL))
+        return fail(HELIO_ERR_ARGUMENT, "an estimate needs shading points and a place for their radiance");
     HELIO_TRY(estimate_resolve(pools, given, &desc));
-    HELIO_TRY(resolve_point(given_point, &point));
-    estimate_result result;
-    estimate_point(pools, &point, &desc, &result);
-    memcpy(radiance, result.visible, sizeof result.visible);
-    if (info != NULL)
-        *info = result.info;
+    for (uint32_t first = 0; first < count; first += POINT_BLOCK) {
+        uint32_t some = count - first < POINT_BLOCK ? count - first : POINT_BLOCK;
+        HELIO_TRY(estimate_checked(pools, some, points + first, &desc, radiance + first,
+                                   infos != NULL ? infos + first : NULL));
+    }
     return HELIO_OK;
 }
 
@@ -304,9 +337,11 @@ static helio_status begin_checked(const helio_pools *pools, const helio_shading_
 {
     helio_estimate_desc desc;
     helio_shading_point point;
+    point_block block;
     HELIO_TRY(estimate_resolve(pools, given, &desc));
     HELIO_TRY(resolve_point(given_point, &point));
-    begin(g, pools, &point, &desc);
+    prepare_points(pools, 1, &point, &desc, &block);
+    begin(g, pools, &point, &block, 0);
     return HELIO_OK;
 }
 

@@ -3,6 +3,8 @@
 #ifndef HELIOSTAT_SRC_ESTIMATE_H
 #define HELIOSTAT_SRC_ESTIMATE_H
 
+#include "sampling/point_block.h"
+
 #include <heliostat/sampling.h>
 
 typedef struct estimate_result {
@@ -17,8 +19,8 @@ helio_status estimate_resolve(const helio_pools *pools, const helio_estimate_des
 /* HELIO_ERR_ARGUMENT if the share is not inside of 0..1. */
 helio_status estimate_check_share(float share);
 
-/* helio_estimate() without checks; desc must come from estimate_resolve(). */
-void estimate_point(const helio_pools *pools, const helio_shading_point *point, const helio_estimate_desc *desc,
-                    estimate_result *result);
+/* helio_estimate_points() without checks, for 1..POINT_BLOCK points; desc must come from estimate_resolve(). */
+void estimate_points(const helio_pools *pools, uint32_t count, const helio_shading_point *points,
+                     const helio_estimate_desc *desc, estimate_result *results);
 
 #endif

@@ -9,6 +9,7 @@
 
 #include "core/isa.h"
 #include "sampling/gathering.h"
+#include "sampling/point_block.h"
 #include "sampling/tables.h"
 
 #define KERNEL_JOIN(name, set) name##_##set
@@ -31,6 +32,18 @@ typedef struct kernel_set {
     /* Draws samples first ... first + count - 1 of a pool that is not black. seed: of the pool. The same bits with
      * every instruction set. */
     void (*draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
+
+    /* Prepares points for their samples: turns their directions to the map's space, lifts views that graze, and fills
+     * in counts and windows. The same bits with every instruction set. */
+    void (*prepare_points)(const helio_pools *pools, const helio_estimate_desc *desc, point_block *block);
+
+    /* A part of it. Realised counts: systematic rounding of the expected ones. Each has its expected value as mean over
+     * `rounding`, and they sum to samples exactly (or to 0, if all expected counts are 0). */
+    void (*round_counts)(uint32_t samples, point_block *block);
+
+    /* The unoccluded light of points whose samples all come from pools, without the intensity of the environment.
+     * surfaces, sums: [block->count] */
+    void (*sum_light)(const helio_pools *pools, const point_block *block, const brdf *surfaces, block_sum *sums);
 
     /* Adds samples to a block, which must have room: pieces of pools, or samples first ... first + count - 1 of the
      * surface technique, drawn now, with the light in their directions. The same bits with every instruction set. */
@@ -65,11 +78,14 @@ typedef struct kernel_set {
 const kernel_set *kernels_of(isa set);
 
 #ifdef HELIO_ISA
-_Static_assert(HELIO_LANES <= POOL_PADDING && BLOCK_SAMPLES % HELIO_LANES == 0,
+_Static_assert(HELIO_LANES <= POOL_PADDING && BLOCK_SAMPLES % HELIO_LANES == 0 && POINT_BLOCK % HELIO_LANES == 0,
                "kernels read and write whole registers, also past the last sample");
 
 row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, uint32_t size, uint32_t *sums);
 void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
+void KERNEL(prepare_points)(const helio_pools *pools, const helio_estimate_desc *desc, point_block *block);
+void KERNEL(round_counts)(uint32_t samples, point_block *block);
+void KERNEL(sum_light)(const helio_pools *pools, const point_block *block, const brdf *surfaces, block_sum *sums);
 void KERNEL(take_pools)(const gathering *g, const pool_piece *pieces, uint32_t piece_count, sample_block *block);
 void KERNEL(draw_surface)(const gathering *g, uint32_t first, uint32_t count, sample_block *block);
 void KERNEL(weigh)(const gathering *g, sample_block *block);

@@ -28,7 +28,7 @@ static helio_status allocate_arrays(helio_pools *pools)
     helio_context *context = pools->tables->environment->context;
     uint32_t limit = helio_pools_sample_limit(pools);
     pools->stride = (size_t)pools->count * pools->pool_length + POOL_PADDING;
-    pools->samples = context_allocate(context, pools->stride, SAMPLE_ARRAYS * sizeof(float));
+    pools->samples = context_allocate(context, pools->stride, POOL_ARRAYS * sizeof(float));
     pools->third_dimension = context_allocate(context, limit, sizeof *pools->third_dimension);
     if (pools->samples == NULL || pools->third_dimension == NULL)
         return HELIO_ERR_MEMORY;
@@ -100,7 +100,7 @@ static bool is_black(const helio_pools *pools, uint32_t pool)
 /* A black pool is left at density 0; no point ever reads it. */
 static void clear_samples(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count)
 {
-    for (int array = 0; array < SAMPLE_ARRAYS; array++)
+    for (int array = 0; array < POOL_ARRAYS; array++)
         memset(pools_array(pools, pool, (enum sample_array)array) + first, 0, count * sizeof(float));
 }
 

@@ -3,6 +3,7 @@
 #ifndef HELIOSTAT_SRC_POOLS_H
 #define HELIOSTAT_SRC_POOLS_H
 
+#include "sampling/elementary.h"
 #include "sampling/strategy.h"
 #include "sampling/tables.h"
 
@@ -20,7 +21,13 @@ enum sample_array {
     SAMPLE_GREEN,
     SAMPLE_BLUE,
     SAMPLE_DENSITY,
-    SAMPLE_ARRAYS
+    SAMPLE_ARRAYS, /* what blocks of samples hold too, see gathering.h */
+
+    /* Radiance / density, which is all that a point needs to know where no other technique can draw the sample. */
+    SAMPLE_WEIGHTED_RED = SAMPLE_ARRAYS,
+    SAMPLE_WEIGHTED_GREEN,
+    SAMPLE_WEIGHTED_BLUE,
+    POOL_ARRAYS
 };
 
 struct helio_pools {
@@ -31,7 +38,7 @@ struct helio_pools {
     uint32_t count;       /* pools: 6, 1 or 0 */
     uint32_t pool_length; /* samples in each: M, or 6 M where there is one pool */
     uint64_t frame;       /* of the environment, when drawn */
-    /* [SAMPLE_ARRAYS], arrays `stride` floats apart: [count][pool_length] each, and POOL_PADDING more that may be read.
+    /* [POOL_ARRAYS], arrays `stride` floats apart: [count][pool_length] each, and POOL_PADDING more that may be read.
      * Directions in the map's space, radiance, density given the pool (1/sr). */
     float *samples;
     size_t stride;
@@ -46,10 +53,12 @@ static inline float *pools_array(const helio_pools *pools, uint32_t pool, enum s
 
 /* First sample of the window from which a point reads `wanted` samples, at least 1: windows are aligned to powers of
  * two, so that each is a net of its own. choice: any hash. */
-static inline uint32_t pools_window(const helio_pools *pools, uint32_t wanted, uint32_t choice)
+static inline uint32_t pools_window(uint32_t pool_length, uint32_t wanted, uint32_t choice)
 {
-    int bits = wanted > 1 ? 32 - __builtin_clz(wanted - 1) : 0;
-    uint32_t windows = pools->pool_length >> bits;
+    /* As many bits as wanted - 1 has, from a float's exponent: loops over points become vectors. */
+    int32_t bits = (bits_of_float((float)(int32_t)(wanted - 1)) >> 23) - 126;
+    bits = wanted > 1 ? bits : 0;
+    uint32_t windows = pool_length >> bits;
     return (uint32_t)(((uint64_t)choice * windows) >> 32) << bits;
 }
 

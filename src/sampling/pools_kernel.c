@@ -5,6 +5,8 @@
 #include "core/random.h"
 #include "sampling/kernels.h"
 
+#include <float.h>
+
 enum { GROUP = 32 }; /* samples drawn together */
 
 /* Searches that go on together. fraction is that of tables_invert(): in x, out where x lies inside of the cell. */
@@ -43,6 +45,13 @@ static void choose_faces(const helio_pools *pools, uint32_t pool, uint32_t count
         faces[i] = whole ? tables_invert(pools->tables->faces, CUBE_FACES, fractions[i], &fractions[i]) : pool;
 }
 
+/* Finite, so that times 0 it is 0. */
+static float weighted(float radiance, float density)
+{
+    float ratio = radiance / density;
+    return ratio < FLT_MAX ? ratio : FLT_MAX;
+}
+
 static void store_sample(helio_pools *pools, uint32_t pool, uint32_t index, const helio_table_sample *sample)
 {
     float *to = pools_array(pools, pool, SAMPLE_X) + index;
@@ -53,6 +62,9 @@ static void store_sample(helio_pools *pools, uint32_t pool, uint32_t index, cons
     to[SAMPLE_GREEN * pools->stride] = sample->radiance[1];
     to[SAMPLE_BLUE * pools->stride] = sample->radiance[2];
     to[SAMPLE_DENSITY * pools->stride] = sample->density;
+    to[SAMPLE_WEIGHTED_RED * pools->stride] = weighted(sample->radiance[0], sample->density);
+    to[SAMPLE_WEIGHTED_GREEN * pools->stride] = weighted(sample->radiance[1], sample->density);
+    to[SAMPLE_WEIGHTED_BLUE * pools->stride] = weighted(sample->radiance[2], sample->density);
 }
 
 static void draw_group(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed)

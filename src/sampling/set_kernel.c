@@ -6,6 +6,9 @@
 const kernel_set KERNEL(kernels) = {
     .sum_row = KERNEL(sum_row),
     .draw_pool = KERNEL(draw_pool),
+    .prepare_points = KERNEL(prepare_points),
+    .round_counts = KERNEL(round_counts),
+    .sum_light = KERNEL(sum_light),
     .take_pools = KERNEL(take_pools),
     .draw_surface = KERNEL(draw_surface),
     .weigh = KERNEL(weigh),

@@ -51,24 +51,3 @@ strategy_parts strategy_divide(helio_strategy strategy)
 {
     return PARTS[helio_strategy_resolve(strategy)];
 }
-
-void strategy_round(const float expected[TECHNIQUES], uint32_t samples, float offset, uint32_t realised[TECHNIQUES])
-{
-    int last = -1;
-    for (int k = 0; k < TECHNIQUES; k++)
-        if (expected[k] > 0.0f)
-            last = k;
-    /* Double, because the offset must not be rounded away beside a large sum. */
-    double sum = (double)offset;
-    uint32_t given = 0;
-    for (int k = 0; k < TECHNIQUES; k++) {
-        sum += (double)expected[k];
-        uint32_t up_to = sum < (double)samples ? (uint32_t)sum : samples;
-        if (k > last)
-            up_to = given;
-        else if (k == last)
-            up_to = samples;
-        realised[k] = up_to - given;
-        given = up_to;
-    }
-}

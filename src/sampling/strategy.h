@@ -34,21 +34,25 @@ strategy_parts strategy_divide(helio_strategy strategy);
 /* HELIO_ERR_ARGUMENT for a value that is no strategy. */
 helio_status strategy_check(helio_strategy strategy);
 
-/* How much, at most, each face of the cube can light a surface with this normal (in the map's space): the largest
- * cosine, times the distance, over the face's corners, max(0, n.c + |n.a| + |n.b|) with the face's axis c and tangent
- * axes a and b. Continuous in the normal; 0 exactly when the whole face is below the horizon. This is the paper's
- * beta_f. */
-static inline void strategy_betas(vec3 normal, float betas[6])
+/* How much, at most, a face of the cube can light a surface with this normal (in the map's space): the largest cosine,
+ * times the distance, over the face's corners, max(0, n.c + |n.a| + |n.b|) with the face's axis c (n.c: along) and its
+ * tangent axes a and b (across, beside). Continuous in the normal; 0 exactly when the whole face is below the horizon.
+ * This is the paper's beta_f. */
+static inline float strategy_beta(float along, float across, float beside)
 {
-    float x = fabsf(normal.x), y = fabsf(normal.y), z = fabsf(normal.z);
-    const float sums[6] = {normal.x + y + z,  -normal.x + y + z, normal.y + x + z,
-                           -normal.y + x + z, normal.z + x + y,  -normal.z + x + y};
-    for (int face = 0; face < 6; face++)
-        betas[face] = sums[face] > 0.0f ? sums[face] : 0.0f;
+    float beta = along + fabsf(across) + fabsf(beside);
+    return beta > 0.0f ? beta : 0.0f;
 }
 
-/* Realised counts: systematic rounding of the expected ones, offset in [0, 1). Each has its expected value as mean over
- * offsets, and they sum to samples exactly (or to 0, if all expected counts are 0). */
-void strategy_round(const float expected[TECHNIQUES], uint32_t samples, float offset, uint32_t realised[TECHNIQUES]);
+/* Of all faces. */
+static inline void strategy_betas(vec3 normal, float betas[6])
+{
+    betas[0] = strategy_beta(normal.x, normal.y, normal.z);
+    betas[1] = strategy_beta(-normal.x, normal.y, normal.z);
+    betas[2] = strategy_beta(normal.y, normal.x, normal.z);
+    betas[3] = strategy_beta(-normal.y, normal.x, normal.z);
+    betas[4] = strategy_beta(normal.z, normal.x, normal.y);
+    betas[5] = strategy_beta(-normal.z, normal.x, normal.y);
+}
 
 #endif

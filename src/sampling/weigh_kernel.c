@@ -11,12 +11,6 @@ typedef enum mixture {
     MIXTURE_COSINE,
 } mixture;
 
-/* x where mask is -1, +0 where it is 0, even if x is not a number. No branch can come of it, as of a selection. */
-static inline float masked(float x, int32_t mask)
-{
-    return float_of_bits(bits_of_float(x) & mask);
-}
-
 /* kind and mix are constants where this is expanded, and so vanish from the loop. */
 static inline __attribute__((always_inline)) void weigh_samples(helio_material_kind kind, mixture mix,
                                                                 const gathering *g, sample_block *restrict block)

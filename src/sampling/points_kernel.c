@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a point needs before its first sample: directions in the map's space, expected and realised counts, windows of
+ * the pools. One lane for each point, in steps that each are a plain loop. */
+#include "core/random.h"
+#include "sampling/kernels.h"
+
+#include <string.h>
+
+/* Streams of random numbers of a point; STREAM_SURFACE belongs to gathering.h. */
+enum { STREAM_ROUNDING = 1, STREAM_WINDOW = 3 };
+
+static uint32_t padded(const point_block *block)
+{
+    return (block->count + HELIO_LANES - 1) / HELIO_LANES * HELIO_LANES;
+}
+
+/* ---- directions ---- */
+
+static void turn(const helio_environment *environment, uint32_t count, point_vectors *vectors)
+{
+    const vec3 a = environment->map_axes[0], b = environment->map_axes[1], c = environment->map_axes[2];
+#pragma omp simd
+    for (uint32_t i = 0; i < count; i++) {
+        float x = vectors->x[i], y = vectors->y[i], z = vectors->z[i];
+        vectors->x[i] = a.x * x + b.x * y + c.x * z;
+        vectors->y[i] = a.y * x + b.y * y + c.y * z;
+        vectors->z[i] = a.z * x + b.z * y + c.z * z;
+    }
+}
+
+static void lift_views(point_block *block)
+{
+    for (uint32_t i = 0; i < block->count; i++) {
+        vec3 normal = point_vector(&block->normal, i), view = point_vector(&block->view, i);
+        if (!(dot(normal, view) >= BRDF_LEAST_VIEW_COSINE))
+            point_vector_put(&block->view, i, brdf_lift_view(normal, view));
+    }
+}
+
+/* ---- expected counts ---- */
+
+/* What the pools are worth to a point. In double, as the flux of a dark map may be less than a float can hold. */
+typedef struct pool_worths {
+    alignas(64) double of_pool[CUBE_FACES][POINT_BLOCK]; /* beta_f x flux_f for faces */
+    alignas(64) double total[POINT_BLOCK];
+} pool_worths;
+
+static void weigh_face(const point_block *block, uint32_t count, uint32_t face, double flux, bool no_beta,
+                       pool_worths *worths)
+{
+    const float *const axes[3] = {block->normal.x, block->normal.y, block->normal.z};
+    const float *along = axes[face / 2], *across = axes[face / 2 == 0 ? 1 : 0], *beside = axes[face / 2 == 2 ? 1 : 2];
+    const float sign = face % 2 == 0 ? 1.0f : -1.0f;
+#pragma omp simd
+    for (uint32_t i = 0; i < count; i++) {
+        float beta = strategy_beta(sign * along[i], across[i], beside[i]);
+        double worth = (no_beta ? (beta > 0.0f ? 1.0 : 0.0) : (double)beta) * flux;
+        worths->of_pool[face][i] = worth;
+        worths->total[i] += worth;
+    }
+}
+
+static void weigh_pools(const helio_pools *pools, const point_block *block, bool no_beta, pool_worths *worths)
+{
+    const helio_tables *tables = pools->tables;
+    const uint32_t count = padded(block);
+    for (uint32_t i = 0; i < count; i++)
+        worths->total[i] = worths->of_pool[0][i] = tables->faces[CUBE_FACES] != 0 ? 1.0 : 0.0;
+    if (pools->parts.light != STRATEGY_LIGHT_FACES)
+        return;
+    for (uint32_t i = 0; i < count; i++)
+        worths->total[i] = 0.0;
+    for (uint32_t face = 0; face < CUBE_FACES; face++)
+        weigh_face(block, count, face, tables->flux[face], no_beta, worths);
+}
+
+static void expect(uint32_t count, const double *worths, const double *shares, float *expected)
+{
+#pragma omp simd
+    for (uint32_t i = 0; i < count; i++)
+        expected[i] = (float)(worths[i] * shares[i]);
+}
+
+/* Expected counts m_k: samples in proportion to beta_f x flux_f, and a fixed share for the surface. All are 0 where no
+ * light can come from above the horizon. */
+static void expect_counts(const helio_pools *pools, const helio_estimate_desc *desc, point_block *block)
+{
+    const uint32_t count = padded(block);
+    const float samples = (float)desc->samples;
+    const float by_surface = pools->count == 0                               ? samples
+                             : pools->parts.surface != STRATEGY_SURFACE_NONE ? samples * desc->brdf_share
+                                                                             : 0.0f;
+    pool_worths worths;
+    alignas(64) double shares[POINT_BLOCK];
+    memset(block->expected, 0, sizeof block->expected);
+    if (pools->count > 0)
+        weigh_pools(pools, block, desc->no_beta, &worths);
+    else
+        for (uint32_t i = 0; i < count; i++)
+            worths.total[i] = 1.0;
+#pragma omp simd
+    for (uint32_t i = 0; i < count; i++) {
+        bool lit = worths.total[i] > 0.0;
+        shares[i] = (lit ? (double)(samples - by_surface) : 0.0) / (lit ? worths.total[i] : 1.0);
+        block->expected[TECHNIQUE_SURFACE][i] = lit ? by_surface : 0.0f;
+    }
+    for (uint32_t k = 0; k < pools->count; k++)
+        expect(count, worths.of_pool[k], shares, block->expected[k]);
+}
+
+/* ---- realised counts ---- */
+
+/* In double, because the offset must not be rounded away beside a large sum. Counts are scaled to sum to samples, from
+ * which single precision keeps them a little away; that the sum then comes out next to a whole number is no matter, as
+ * offsets are whole multiples of 2^-24, and half-way between two of them is where rounding starts. */
+void KERNEL(round_counts)(uint32_t samples, point_block *block)
+{
+    const uint32_t count = padded(block);
+    alignas(64) double scales[POINT_BLOCK], sums[POINT_BLOCK];
+    alignas(64) int32_t given[POINT_BLOCK];
+    for (uint32_t i = 0; i < count; i++) {
+        scales[i] = 0.0;
+        sums[i] = (double)block->rounding[i] + 0x1p-25;
+        given[i] = 0;
+    }
+    for (int32_t k = 0; k < TECHNIQUES; k++)
+#pragma omp simd
+        for (uint32_t i = 0; i < count; i++)
+            scales[i] += (double)block->expected[k][i];
+#pragma omp simd
+    for (uint32_t i = 0; i < count; i++)
+        scales[i] = scales[i] > 0.0 ? (double)samples / (scales[i] > 0.0 ? scales[i] : 1.0) : 0.0;
+    for (int32_t k = 0; k < TECHNIQUES; k++)
+#pragma omp simd
+        for (uint32_t i = 0; i < count; i++) {
+            sums[i] += (double)block->expected[k][i] * scales[i];
+            int32_t up_to = (int32_t)sums[i];
+            block->realised[k][i] = (uint32_t)(up_to - given[i]);
+            given[i] = up_to;
+        }
+}
+
+/* ---- windows ---- */
+
+static void choose_windows(const helio_pools *pools, uint32_t pool, point_block *block)
+{
+    const uint32_t count = padded(block), length = pools->pool_length;
+#pragma omp simd
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t choice = hash_combine(hash_combine(block->seed[i], STREAM_WINDOW), pool);
+        block->windows[pool][i] = pools_window(length, block->realised[pool][i], choice);
+    }
+}
+
+/* ---- all of it ---- */
+
+void KERNEL(prepare_points)(const helio_pools *pools, const helio_estimate_desc *desc, point_block *block)
+{
+    const helio_environment *environment = pools->tables->environment;
+    const uint32_t count = padded(block);
+    turn(environment, count, &block->normal);
+    turn(environment, count, &block->geometric_normal);
+    turn(environment, count, &block->view);
+    lift_views(block);
+    expect_counts(pools, desc, block);
+#pragma omp simd
+    for (uint32_t i = 0; i < count; i++)
+        block->rounding[i] = unit_float(hash_combine(block->seed[i], STREAM_ROUNDING));
+    KERNEL(round_counts)(desc->samples, block);
+    for (uint32_t k = 0; k < pools->count; k++)
+        choose_windows(pools, k, block);
+}
