@@ -231,15 +231,15 @@ static void estimate_by_blocks(const gathering *g, const kernel_set *kernels, co
 }
 
 /* Nothing asks for single samples, so that they need no blocks. */
-static void estimate_from_pools(const helio_pools *pools, const helio_shading_point *points, const point_block *block,
-                                estimate_result *results)
+static void estimate_from_pools(const helio_pools *pools, uint32_t samples, const helio_shading_point *points,
+                                const point_block *block, estimate_result *results)
 {
     const helio_environment *environment = pools->tables->environment;
     brdf surfaces[POINT_BLOCK];
     block_sum sums[POINT_BLOCK];
     for (uint32_t i = 0; i < block->count; i++)
         prepare_surface(block, i, &points[i].material, &surfaces[i]);
-    kernels_of(context_isa(environment->context))->sum_light(pools, block, surfaces, sums);
+    kernels_of(context_isa(environment->context))->sum_light(pools, samples, block, surfaces, sums);
     for (uint32_t i = 0; i < block->count; i++) {
         results[i].info = (helio_estimate_info){.useful = sums[i].useful};
         for (uint32_t k = 0; k < pools->count; k++)
@@ -256,7 +256,7 @@ void estimate_points(const helio_pools *pools, uint32_t count, const helio_shadi
     gathering g;
     prepare_points(pools, count, points, desc, &block);
     if (pools->parts.surface == STRATEGY_SURFACE_NONE && desc->visibility == NULL) {
-        estimate_from_pools(pools, points, &block, results);
+        estimate_from_pools(pools, desc->samples, points, &block, results);
         return;
     }
     const kernel_set *kernels = kernels_of(context_isa(pools->tables->environment->context));
@@ -277,19 +277,28 @@ static helio_status check_unit(const char *name, const float direction[3])
                 sqrt((double)square));
 }
 
-/* Checks what a caller gives and fills in defaults; the renderer, which makes its points itself, does without. */
-static helio_status resolve_point(const helio_shading_point *given, helio_shading_point *point)
+/* Checks what a caller gives, but not its material, and fills in defaults. */
+static helio_status resolve_directions(const helio_shading_point *given, helio_shading_point *point)
 {
-    if (given == NULL)
-        return fail(HELIO_ERR_ARGUMENT, "an estimate needs a shading point");
     *point = *given;
     const float *flat = point->geometric_normal;
     if (flat[0] == 0.0f && flat[1] == 0.0f && flat[2] == 0.0f)
         memcpy(point->geometric_normal, point->normal, sizeof point->normal);
     HELIO_TRY(check_unit("normal", point->normal));
     HELIO_TRY(check_unit("geometric normal", point->geometric_normal));
-    HELIO_TRY(check_unit("view", point->view));
-    return helio_material_check(&point->material);
+    return check_unit("view", point->view);
+}
+
+/* The renderer, which makes its points itself, does without. */
+static helio_status resolve_points(uint32_t count, const helio_shading_point *given, helio_shading_point *points)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        HELIO_TRY(resolve_directions(&given[i], &points[i]));
+        /* Neighbours mostly have the same. */
+        if (i == 0 || memcmp(&given[i].material, &given[i - 1].material, sizeof given[i].material) != 0)
+            HELIO_TRY(helio_material_check(&given[i].material));
+    }
+    return HELIO_OK;
 }
 
 helio_status helio_estimate(const helio_pools *pools, const helio_shading_point *point, const helio_estimate_desc *desc,
@@ -306,8 +315,7 @@ static helio_status estimate_checked(const helio_pools *pools, uint32_t count, c
 {
     helio_shading_point points[POINT_BLOCK];
     estimate_result results[POINT_BLOCK];
-    for (uint32_t i = 0; i < count; i++)
-        HELIO_TRY(resolve_point(&given[i], &points[i]));
+    HELIO_TRY(resolve_points(count, given, points));
     estimate_points(pools, count, points, desc, results);
     for (uint32_t i = 0; i < count; i++) {
         memcpy(radiance[i], results[i].visible, sizeof radiance[i]);
@@ -339,7 +347,9 @@ static helio_status begin_checked(const helio_pools *pools, const helio_shading_
     helio_shading_point point;
     point_block block;
     HELIO_TRY(estimate_resolve(pools, given, &desc));
-    HELIO_TRY(resolve_point(given_point, &point));
+    if (given_point == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "an estimate needs a shading point");
+    HELIO_TRY(resolve_points(1, given_point, &point));
     prepare_points(pools, 1, &point, &desc, &block);
     begin(g, pools, &point, &block, 0);
     return HELIO_OK;

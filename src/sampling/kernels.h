@@ -42,8 +42,9 @@ typedef struct kernel_set {
     void (*round_counts)(uint32_t samples, point_block *block);
 
     /* The unoccluded light of points whose samples all come from pools, without the intensity of the environment.
-     * surfaces, sums: [block->count] */
-    void (*sum_light)(const helio_pools *pools, const point_block *block, const brdf *surfaces, block_sum *sums);
+     * samples: of each. surfaces, sums: [block->count] */
+    void (*sum_light)(const helio_pools *pools, uint32_t samples, const point_block *block, const brdf *surfaces,
+                      block_sum *sums);
 
     /* Adds samples to a block, which must have room: pieces of pools, or samples first ... first + count - 1 of the
      * surface technique, drawn now, with the light in their directions. The same bits with every instruction set. */
@@ -85,7 +86,8 @@ row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, uint32_t si
 void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
 void KERNEL(prepare_points)(const helio_pools *pools, const helio_estimate_desc *desc, point_block *block);
 void KERNEL(round_counts)(uint32_t samples, point_block *block);
-void KERNEL(sum_light)(const helio_pools *pools, const point_block *block, const brdf *surfaces, block_sum *sums);
+void KERNEL(sum_light)(const helio_pools *pools, uint32_t samples, const point_block *block, const brdf *surfaces,
+                       block_sum *sums);
 void KERNEL(take_pools)(const gathering *g, const pool_piece *pieces, uint32_t piece_count, sample_block *block);
 void KERNEL(draw_surface)(const gathering *g, uint32_t first, uint32_t count, sample_block *block);
 void KERNEL(weigh)(const gathering *g, sample_block *block);

@@ -6,37 +6,28 @@
  * additions may be fused here. */
 #include "sampling/kernels.h"
 
-/* Sums that each lane keeps for itself until a point has all of its samples. */
-typedef struct lane_sums {
-    alignas(64) float light[BRDF_LOBES][3][HELIO_LANES]; /* of weighted radiance x cosine x lobe */
-    alignas(64) int32_t useful[HELIO_LANES];
-} lane_sums;
-
-enum { PIECES = 16, PIECES_AT_ONCE = 4, PIECE_ROOM = PIECES + PIECES_AT_ONCE };
-
-/* Registers of samples that a point reads, from all pools in one list: one loop over it, where a loop for each pool
- * would end when no processor expects it. */
-typedef struct piece_list {
+/* Samples of a point side by side, whatever pool they come from, so that registers are full; and what the point does
+ * with them. That is found in one loop and used in another: either's chain of operations that wait for each other is so
+ * short that processors work on several registers at a time. */
+typedef struct light_block {
     uint32_t count;
-    alignas(64) uint32_t first[PIECE_ROOM];         /* in the array of all pools */
-    alignas(64) int32_t rest[PIECE_ROOM];           /* lanes that count: as many as are below this */
-    alignas(64) float inverse_expected[PIECE_ROOM]; /* 1 / m_f */
-} piece_list;
-
-/* What a point does with the samples of its pieces. Found in one loop and used in another: either's chain of operations
- * that wait for each other is so short that processors work on several registers at a time. */
-typedef struct piece_lobes {
-    alignas(64) float weight[PIECE_ROOM][HELIO_LANES]; /* cosine / m_f, 0 for what does not count */
-    alignas(64) float second[PIECE_ROOM][HELIO_LANES]; /* lobes, see brdf_lobes(); for PHONG_WIDE log2 of the lobe */
-    alignas(64) float third[PIECE_ROOM][HELIO_LANES];
-    alignas(64) float first[PIECE_ROOM][HELIO_LANES];
-} piece_lobes;
+    alignas(64) float x[BLOCK_STRIDE];
+    alignas(64) float y[BLOCK_STRIDE];
+    alignas(64) float z[BLOCK_STRIDE];
+    alignas(64) float red[BLOCK_STRIDE]; /* of radiance / (m_f pdf_f) */
+    alignas(64) float green[BLOCK_STRIDE];
+    alignas(64) float blue[BLOCK_STRIDE];
+    alignas(64) float weight[BLOCK_STRIDE]; /* cosine, 0 for what does not count */
+    alignas(64) float first[BLOCK_STRIDE];  /* lobes, see brdf_lobes() ... */
+    alignas(64) float second[BLOCK_STRIDE]; /* ... and for PHONG_WIDE log2 of the lobe */
+    alignas(64) float third[BLOCK_STRIDE];
+} light_block;
 
 /* What is summed: a kind of BRDF, perhaps by a faster form of its lobes. */
 typedef enum light_form {
     LIGHT_DIFFUSE,
     LIGHT_PHONG,
-    LIGHT_PHONG_WIDE, /* see phong_lobe_wide() */
+    LIGHT_PHONG_WIDE, /* see phong_lobe_wide_log2() */
     LIGHT_GGX,
 } light_form;
 
@@ -47,10 +38,66 @@ static light_form form_of(const brdf *surface)
     return surface->kind == HELIO_MATERIAL_GGX ? LIGHT_GGX : LIGHT_DIFFUSE;
 }
 
-static inline uint32_t lobes_of(light_form form)
+/* ---- taking samples ---- */
+
+/* The arrays of all pools that are read; colours weighted. */
+typedef struct pool_arrays {
+    const float *x, *y, *z, *red, *green, *blue;
+} pool_arrays;
+
+static pool_arrays arrays_of(const helio_pools *pools)
 {
-    return form == LIGHT_GGX ? 3 : form == LIGHT_DIFFUSE ? 1 : 2;
+    return (pool_arrays){pools_array(pools, 0, SAMPLE_X),
+                         pools_array(pools, 0, SAMPLE_Y),
+                         pools_array(pools, 0, SAMPLE_Z),
+                         pools_array(pools, 0, SAMPLE_WEIGHTED_RED),
+                         pools_array(pools, 0, SAMPLE_WEIGHTED_GREEN),
+                         pools_array(pools, 0, SAMPLE_WEIGHTED_BLUE)};
 }
+
+/* A register from the pools to the end of a block. What is too much is overwritten by the next, or never read. */
+static inline __attribute__((always_inline)) void copy_register(const pool_arrays *pools, size_t from, float scale,
+                                                                size_t to, light_block *restrict block)
+{
+#pragma omp simd
+    for (size_t i = 0; i < HELIO_LANES; i++) {
+        block->x[to + i] = pools->x[from + i];
+        block->y[to + i] = pools->y[from + i];
+        block->z[to + i] = pools->z[from + i];
+        block->red[to + i] = pools->red[from + i] * scale;
+        block->green[to + i] = pools->green[from + i] * scale;
+        block->blue[to + i] = pools->blue[from + i] * scale;
+    }
+}
+
+/* `count` samples of a pool, at least a register: a branch for none would be guessed wrong. */
+static inline __attribute__((always_inline)) void copy_window(const pool_arrays *pools, size_t from, uint32_t count,
+                                                              float scale, size_t to, light_block *restrict block)
+{
+    uint32_t copied = 0;
+    do {
+        copy_register(pools, from + copied, scale, to + copied, block);
+        copied += HELIO_LANES;
+    } while (copied < count);
+}
+
+/* Samples first ... of all that a point takes, as many as fit, counted through all pools. */
+static inline __attribute__((always_inline)) void take_samples(const pool_arrays *arrays, uint32_t pool_count,
+                                                               const point_block *points, uint32_t index,
+                                                               uint32_t first, light_block *block)
+{
+    uint32_t taken = 0;
+    for (uint32_t pool = 0; pool < pool_count; pool++) {
+        const uint32_t all = points->realised[pool][index], skipped = first < all ? first : all;
+        const uint32_t rest = all - skipped, room = BLOCK_SAMPLES - taken, count = rest < room ? rest : room;
+        copy_window(arrays, points->windows[pool][index] + skipped, count, points->scales[pool][index], taken, block);
+        taken += count;
+        first -= skipped;
+    }
+    block->count = taken;
+}
+
+/* ---- using them ---- */
 
 static inline vec3 lobes_in(light_form form, const brdf *surface, vec3 direction, float cosine)
 {
@@ -62,197 +109,112 @@ static inline vec3 lobes_in(light_form form, const brdf *surface, vec3 direction
     }
 }
 
-/* The arrays of all pools that are read. */
-typedef struct pool_arrays {
-    const float *x, *y, *z, *red, *green, *blue; /* the last three weighted */
-} pool_arrays;
-
-static inline pool_arrays arrays_of(const helio_pools *pools)
+static inline int32_t whole_registers(uint32_t count)
 {
-    return (pool_arrays){
-        pools_array(pools, 0, SAMPLE_X),
-        pools_array(pools, 0, SAMPLE_Y),
-        pools_array(pools, 0, SAMPLE_Z),
-        pools_array(pools, 0, SAMPLE_WEIGHTED_RED),
-        pools_array(pools, 0, SAMPLE_WEIGHTED_GREEN),
-        pools_array(pools, 0, SAMPLE_WEIGHTED_BLUE),
-    };
+    return ((int32_t)count + HELIO_LANES - 1) / HELIO_LANES * HELIO_LANES;
 }
 
 /* form is a constant where these are expanded, and so vanishes from the loops. */
 static inline __attribute__((always_inline)) void find_lobes(light_form form, const brdf *surface,
-                                                             vec3 geometric_normal, const pool_arrays *arrays,
-                                                             const piece_list *pieces, piece_lobes *found)
+                                                             vec3 geometric_normal, light_block *restrict block)
 {
-    for (uint32_t p = 0; p < pieces->count; p++) {
-        const size_t first = pieces->first[p];
-        const int32_t rest = pieces->rest[p];
-        const float inverse_expected = pieces->inverse_expected[p];
+    const int32_t count = (int32_t)block->count, padded = whole_registers(block->count);
 #pragma omp simd
-        for (int32_t i = 0; i < HELIO_LANES; i++) {
-            const size_t k = first + (size_t)i;
-            vec3 direction = {arrays->x[k], arrays->y[k], arrays->z[k]};
-            float cosine = dot(surface->normal, direction), above = dot(geometric_normal, direction);
-            cosine = cosine > 0.0f ? cosine : 0.0f;
-            vec3 lobes = lobes_in(form, surface, direction, cosine);
-            found->weight[p][i] = masked(cosine * inverse_expected, -((i < rest) & (above > 0.0f)));
-            if (form == LIGHT_GGX)
-                found->first[p][i] = lobes.x;
-            if (form != LIGHT_DIFFUSE)
-                found->second[p][i] = lobes.y;
-            if (form == LIGHT_GGX)
-                found->third[p][i] = lobes.z;
-        }
+    for (int32_t i = 0; i < padded; i++) {
+        vec3 direction = {block->x[i], block->y[i], block->z[i]};
+        float cosine = dot(surface->normal, direction), above = dot(geometric_normal, direction);
+        cosine = cosine > 0.0f ? cosine : 0.0f;
+        vec3 lobes = lobes_in(form, surface, direction, cosine);
+        block->weight[i] = masked(cosine, -((i < count) & (above > 0.0f)));
+        if (form == LIGHT_GGX)
+            block->first[i] = lobes.x;
+        if (form != LIGHT_DIFFUSE)
+            block->second[i] = lobes.y;
+        if (form == LIGHT_GGX)
+            block->third[i] = lobes.z;
     }
 }
+
+/* Light by lobe and colour. */
+typedef struct lobe_sums {
+    vec3 first, second, third;
+    int32_t useful;
+} lobe_sums;
 
 static inline __attribute__((always_inline)) void add_light(light_form form, const brdf *surface,
-                                                            const pool_arrays *arrays, const piece_list *pieces,
-                                                            const piece_lobes *found, lane_sums *sums)
+                                                            const light_block *block, lobe_sums *sums)
 {
+    const int32_t padded = whole_registers(block->count);
     const vec3 diffuse = surface->colours[0];
     const float shows = diffuse.x + diffuse.y + diffuse.z > 0.0f ? 1.0f : 0.0f;
-    for (uint32_t p = 0; p < pieces->count; p++) {
-        const size_t first = pieces->first[p];
-#pragma omp simd
-        for (int32_t i = 0; i < HELIO_LANES; i++) {
-            const size_t k = first + (size_t)i;
-            float red = arrays->red[k], green = arrays->green[k], blue = arrays->blue[k];
-            float weight = found->weight[p][i], shown = shows * weight;
-            float first_lobe = form == LIGHT_GGX ? weight * found->first[p][i] : weight;
-            sums->light[0][0][i] += red * first_lobe;
-            sums->light[0][1][i] += green * first_lobe;
-            sums->light[0][2][i] += blue * first_lobe;
-            if (form != LIGHT_DIFFUSE) {
-                float second = found->second[p][i];
-                second = weight * (form == LIGHT_PHONG_WIDE ? exp2_fast(second) : second);
-                sums->light[1][0][i] += red * second;
-                sums->light[1][1][i] += green * second;
-                sums->light[1][2][i] += blue * second;
-                shown += form == LIGHT_PHONG_WIDE ? 0.0f : second; /* wide lobes are beside a diffuse one */
-            }
-            if (form == LIGHT_GGX) {
-                float third = weight * found->third[p][i];
-                sums->light[2][0][i] += red * third;
-                sums->light[2][1][i] += green * third;
-                sums->light[2][2][i] += blue * third;
-            }
-            sums->useful[i] += shown > 0.0f;
+    float red1 = 0, green1 = 0, blue1 = 0, red2 = 0, green2 = 0, blue2 = 0, red3 = 0, green3 = 0, blue3 = 0;
+    int32_t useful = 0;
+#pragma omp simd reduction(+ : red1, green1, blue1, red2, green2, blue2, red3, green3, blue3, useful)
+    for (int32_t i = 0; i < padded; i++) {
+        float red = block->red[i], green = block->green[i], blue = block->blue[i];
+        float weight = block->weight[i], shown = shows * weight;
+        float first = form == LIGHT_GGX ? weight * block->first[i] : weight;
+        red1 += red * first;
+        green1 += green * first;
+        blue1 += blue * first;
+        if (form != LIGHT_DIFFUSE) {
+            float lobe = form == LIGHT_PHONG_WIDE ? exp2_fast(block->second[i]) : block->second[i];
+            float second = weight * lobe;
+            red2 += red * second;
+            green2 += green * second;
+            blue2 += blue * second;
+            shown += form == LIGHT_PHONG_WIDE ? 0.0f : second; /* wide lobes are beside a diffuse one */
         }
-    }
-}
-
-/* How far a point has come with listing what it reads. */
-typedef struct piece_cursor {
-    uint32_t pool, done; /* samples of that pool */
-} piece_cursor;
-
-/* Some registers of a window. Writes always as many, so that there is no branch. */
-static inline void list_some(uint32_t first, uint32_t count, float inverse_expected, piece_list *pieces)
-{
-    const uint32_t at = pieces->count, registers = (count + HELIO_LANES - 1) / HELIO_LANES;
-    for (uint32_t i = 0; i < PIECES_AT_ONCE; i++) {
-        pieces->first[at + i] = first + i * HELIO_LANES;
-        pieces->rest[at + i] = (int32_t)count - (int32_t)i * HELIO_LANES;
-        pieces->inverse_expected[at + i] = inverse_expected;
-    }
-    pieces->count += registers < PIECES_AT_ONCE ? registers : PIECES_AT_ONCE;
-}
-
-/* What the point reads next, as much as the list holds. */
-static inline void list_pieces(const helio_pools *pools, const point_block *block, uint32_t index, piece_cursor *cursor,
-                               piece_list *pieces)
-{
-    pieces->count = 0;
-    while (cursor->pool < pools->count && pieces->count < PIECES) {
-        const uint32_t pool = cursor->pool, done = cursor->done, count = block->realised[pool][index];
-        const uint32_t first = pool * pools->pool_length + block->windows[pool][index];
-        list_some(first + done, count - done, 1.0f / block->expected[pool][index], pieces);
-        cursor->done += PIECES_AT_ONCE * HELIO_LANES;
-        if (cursor->done >= count)
-            *cursor = (piece_cursor){pool + 1, 0};
-    }
-}
-
-/* The lobes get their colours lane by lane: red, green, blue, and how many samples are useful. */
-static inline __attribute__((always_inline)) void colour_lanes(light_form form, const brdf *surface,
-                                                               const lane_sums *sums, float lanes[4][HELIO_LANES])
-{
-    const uint32_t lobe_count = lobes_of(form);
-#pragma omp simd
-    for (int32_t i = 0; i < HELIO_LANES; i++) {
-        vec3 light = {0, 0, 0};
-        for (uint32_t k = 0; k < lobe_count; k++) {
-            light.x += surface->colours[k].x * sums->light[k][0][i];
-            light.y += surface->colours[k].y * sums->light[k][1][i];
-            light.z += surface->colours[k].z * sums->light[k][2][i];
+        if (form == LIGHT_GGX) {
+            float third = weight * block->third[i];
+            red3 += red * third;
+            green3 += green * third;
+            blue3 += blue * third;
         }
-        lanes[0][i] = light.x;
-        lanes[1][i] = light.y;
-        lanes[2][i] = light.z;
-        lanes[3][i] = (float)sums->useful[i];
+        useful += shown > 0.0f;
     }
+    sums->first = add(sums->first, (vec3){red1, green1, blue1});
+    sums->second = add(sums->second, (vec3){red2, green2, blue2});
+    sums->third = add(sums->third, (vec3){red3, green3, blue3});
+    sums->useful += useful;
 }
 
-static inline __attribute__((always_inline)) void add_half(float lanes[4][HELIO_LANES], int32_t half)
+static inline vec3 product(vec3 a, vec3 b)
 {
-    if (half >= HELIO_LANES)
-        return;
-    for (int c = 0; c < 4; c++)
-#pragma omp simd
-        for (int32_t i = 0; i < half; i++)
-            lanes[c][i] += lanes[c][i + half];
+    return (vec3){a.x * b.x, a.y * b.y, a.z * b.z};
 }
 
-/* By halves, so that these additions too are done side by side. */
-static inline __attribute__((always_inline)) block_sum add_lanes(float lanes[4][HELIO_LANES])
+static inline __attribute__((always_inline)) block_sum sum_point(light_form form, const helio_pools *pools,
+                                                                 uint32_t samples, const point_block *points,
+                                                                 uint32_t index, const brdf *surface)
 {
-    add_half(lanes, 8);
-    add_half(lanes, 4);
-    add_half(lanes, 2);
-    add_half(lanes, 1);
-    return (block_sum){{lanes[0][0], lanes[1][0], lanes[2][0]}, (uint32_t)lanes[3][0]};
-}
-
-static inline __attribute__((always_inline)) void clear_lanes(lane_sums *sums)
-{
-    for (int k = 0; k < BRDF_LOBES; k++)
-        for (int c = 0; c < 3; c++)
-#pragma omp simd
-            for (int32_t i = 0; i < HELIO_LANES; i++)
-                sums->light[k][c][i] = 0.0f;
-#pragma omp simd
-    for (int32_t i = 0; i < HELIO_LANES; i++)
-        sums->useful[i] = 0;
-}
-
-static inline __attribute__((always_inline)) block_sum
-sum_point(light_form form, const helio_pools *pools, const point_block *block, uint32_t index, const brdf *surface)
-{
-    const vec3 geometric_normal = point_vector(&block->geometric_normal, index);
+    const vec3 geometric_normal = point_vector(&points->geometric_normal, index);
     const pool_arrays arrays = arrays_of(pools);
-    piece_cursor cursor = {0};
-    piece_list pieces;
-    piece_lobes found;
-    lane_sums sums;
-    alignas(64) float lanes[4][HELIO_LANES];
-    clear_lanes(&sums);
+    light_block block;
+    lobe_sums sums = {0};
+    uint32_t done = 0;
     do {
-        list_pieces(pools, block, index, &cursor, &pieces);
-        find_lobes(form, surface, geometric_normal, &arrays, &pieces, &found);
-        add_light(form, surface, &arrays, &pieces, &found, &sums);
-    } while (cursor.pool < pools->count);
-    colour_lanes(form, surface, &sums, lanes);
-    return add_lanes(lanes);
+        take_samples(&arrays, pools->count, points, index, done, &block);
+        find_lobes(form, surface, geometric_normal, &block);
+        add_light(form, surface, &block, &sums);
+        done += block.count;
+    } while (block.count > 0 && done < samples);
+    vec3 light = product(sums.first, surface->colours[0]);
+    if (form != LIGHT_DIFFUSE)
+        light = add(light, product(sums.second, surface->colours[1]));
+    if (form == LIGHT_GGX)
+        light = add(light, product(sums.third, surface->colours[2]));
+    return (block_sum){{light.x, light.y, light.z}, (uint32_t)sums.useful};
 }
 
-void KERNEL(sum_light)(const helio_pools *pools, const point_block *block, const brdf *surfaces, block_sum *sums)
+void KERNEL(sum_light)(const helio_pools *pools, uint32_t samples, const point_block *points, const brdf *surfaces,
+                       block_sum *sums)
 {
-    for (uint32_t i = 0; i < block->count; i++)
+    for (uint32_t i = 0; i < points->count; i++)
         switch (form_of(&surfaces[i])) {
-        case LIGHT_DIFFUSE: sums[i] = sum_point(LIGHT_DIFFUSE, pools, block, i, &surfaces[i]); break;
-        case LIGHT_PHONG: sums[i] = sum_point(LIGHT_PHONG, pools, block, i, &surfaces[i]); break;
-        case LIGHT_PHONG_WIDE: sums[i] = sum_point(LIGHT_PHONG_WIDE, pools, block, i, &surfaces[i]); break;
-        case LIGHT_GGX: sums[i] = sum_point(LIGHT_GGX, pools, block, i, &surfaces[i]); break;
+        case LIGHT_DIFFUSE: sums[i] = sum_point(LIGHT_DIFFUSE, pools, samples, points, i, &surfaces[i]); break;
+        case LIGHT_PHONG: sums[i] = sum_point(LIGHT_PHONG, pools, samples, points, i, &surfaces[i]); break;
+        case LIGHT_PHONG_WIDE: sums[i] = sum_point(LIGHT_PHONG_WIDE, pools, samples, points, i, &surfaces[i]); break;
+        case LIGHT_GGX: sums[i] = sum_point(LIGHT_GGX, pools, samples, points, i, &surfaces[i]); break;
         }
 }

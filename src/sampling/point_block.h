@@ -27,7 +27,8 @@ typedef struct point_block {
     alignas(64) float expected[TECHNIQUES][POINT_BLOCK];
     alignas(64) float rounding[POINT_BLOCK]; /* where systematic rounding starts, in [0, 1) */
     alignas(64) uint32_t realised[TECHNIQUES][POINT_BLOCK];
-    alignas(64) uint32_t windows[CUBE_FACES][POINT_BLOCK]; /* first sample that is read of each pool */
+    alignas(64) uint32_t windows[CUBE_FACES][POINT_BLOCK]; /* first sample that is read, in the arrays of all pools */
+    alignas(64) float scales[CUBE_FACES][POINT_BLOCK];     /* 1 / expected, or 0 for pools that are not read */
 } point_block;
 
 static inline vec3 point_vector(const point_vectors *vectors, uint32_t i)

@@ -145,11 +145,14 @@ void KERNEL(round_counts)(uint32_t samples, point_block *block)
 
 static void choose_windows(const helio_pools *pools, uint32_t pool, point_block *block)
 {
-    const uint32_t count = padded(block), length = pools->pool_length;
+    const uint32_t count = padded(block), length = pools->pool_length, start = pool * length;
 #pragma omp simd
     for (uint32_t i = 0; i < count; i++) {
         uint32_t choice = hash_combine(hash_combine(block->seed[i], STREAM_WINDOW), pool);
-        block->windows[pool][i] = pools_window(length, block->realised[pool][i], choice);
+        uint32_t realised = block->realised[pool][i];
+        float expected = block->expected[pool][i];
+        block->windows[pool][i] = start + pools_window(length, realised, choice);
+        block->scales[pool][i] = (realised > 0 ? 1.0f : 0.0f) / (realised > 0 ? expected : 1.0f);
     }
 }
 

@@ -111,7 +111,7 @@ void KERNEL(take_pools)(const gathering *g, const pool_piece *pieces, uint32_t p
     float *restrict to = block->samples[SAMPLE_X] + block->count;
     for (const pool_piece *piece = pieces; piece < pieces + piece_count; piece++) {
         const float expected = g->counts.expected[piece->pool];
-        const float *from = samples + (size_t)piece->pool * g->pools->pool_length + piece->first;
+        const float *from = samples + piece->first;
         for (uint32_t chunk = 0; chunk < piece->count; chunk += HELIO_LANES) {
 #pragma omp simd
             for (size_t i = 0; i < HELIO_LANES; i++) {
