@@ -10,7 +10,7 @@ TARGET =
 JOBS := $(shell nproc 2>/dev/null || echo 2)
 
 # Every test program prints the name of each of its tests, so show what they print.
-CTEST = ctest --verbose --no-tests=error --parallel $(JOBS)
+CTEST = $(CURDIR)/scripts/run-tests.sh --verbose --no-tests=error --parallel $(JOBS)
 
 ifeq ($(DEPENDENCIES),yes)
 install_dependencies = @scripts/install-dependencies.sh
