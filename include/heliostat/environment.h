@@ -93,6 +93,10 @@ typedef struct helio_orientation {
 
 HELIO_API helio_status helio_environment_orient(helio_environment *environment, const helio_orientation *orientation);
 
+/* A world-space direction in the map's space, that of the cube: turned back, and mirrored where the map is. */
+HELIO_API void helio_environment_to_map(const helio_environment *environment, const float direction[3],
+                                        float in_map[3]);
+
 /* Radiance that arrives from a direction in world space: nearest texel, orientation applied. */
 HELIO_API void helio_environment_radiance(const helio_environment *environment, const float direction[3],
                                           float radiance[3]);

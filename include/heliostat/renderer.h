@@ -84,6 +84,38 @@ HELIO_API helio_picture helio_renderer_picture(const helio_renderer *renderer);
 /* How many passes a frame takes: about spp x aa / (M / 8). Each redraws the pools. */
 HELIO_API uint32_t helio_renderer_passes(const helio_renderer *renderer);
 
+/* ---- a single pixel, to be looked into ---------------------------------------------- */
+
+/* What the camera ray of a pixel meets. */
+typedef enum helio_hit {
+    HELIO_HIT_NOTHING = 0, /* the background */
+    HELIO_HIT_OBJECT,
+    HELIO_HIT_PLANE,
+    HELIO_HIT_CATCHER, /* the plane of which only the shadows are seen */
+} helio_hit;
+
+/* What the renderer estimates for a pixel in one step. helio_count(), helio_gather() and helio_estimate() with
+ * helio_renderer_pools(), this point and this desc give what it uses and what it gets. */
+typedef struct helio_pixel_step {
+    helio_hit hit;
+    helio_shading_point point;    /* all 0 where nothing is hit */
+    helio_estimate_desc estimate; /* its visibility function asks the scene; valid as long as the renderer */
+} helio_pixel_step;
+
+/* How many steps a frame takes: one for each camera sample where the pools have enough samples for a point, else
+ * several, each with new pools. A pixel of the object is the mean of its steps' estimates, weighted by their samples.
+ */
+HELIO_API uint32_t helio_renderer_steps(const helio_renderer *renderer);
+
+/* Looks into step 0 ... helio_renderer_steps() - 1 of a frame, rendered or not: column x from the left, row y from the
+ * top, counted from 0. Builds the tables where the environment has a new frame, draws the pools of the step and traces
+ * what is not known of its camera rays; takes no memory and leaves the picture as it is. */
+HELIO_API helio_status helio_renderer_pixel(helio_renderer *renderer, const helio_frame_desc *desc, uint32_t x,
+                                            uint32_t y, uint32_t step, helio_pixel_step *pixel);
+
+/* The pools as the latest render or helio_renderer_pixel() left them; they live as long as the renderer. */
+HELIO_API const helio_pools *helio_renderer_pools(const helio_renderer *renderer);
+
 #ifdef __cplusplus
 }
 #endif

@@ -114,6 +114,23 @@ HELIO_API helio_status helio_pools_draw(helio_pools *pools, uint32_t seed, uint3
 /* Most samples that one gather may take from these pools: M / 8. */
 HELIO_API uint32_t helio_pools_sample_limit(const helio_pools *pools);
 
+/* How many pools there are: 6, one for each face (FACE), 1 (LIGHT), or 0. And how many samples each holds: M, or 6 M
+ * where there is one. */
+HELIO_API uint32_t helio_pools_count(const helio_pools *pools);
+HELIO_API uint32_t helio_pools_length(const helio_pools *pools);
+
+/* One sample of a pool, as every point that reads it finds it. */
+typedef struct helio_pool_sample {
+    float direction[3]; /* in the map's space: before orientation */
+    float radiance[3];  /* of the texel, without intensity */
+    float density;      /* 1/sr, given the pool; 0 in a pool without light */
+} helio_pool_sample;
+
+/* Copies samples first ... first + count - 1 of a pool. samples: [count]. HELIO_ERR_ARGUMENT where there are no such
+ * samples, and before the first draw. */
+HELIO_API helio_status helio_pools_read(const helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count,
+                                        helio_pool_sample *samples);
+
 /* ---- shading points ------------------------------------------------------------------ */
 
 /* Directions must have unit length (to 1e-3) and the material must pass helio_material_check(): helio_count(),
@@ -148,6 +165,8 @@ typedef struct helio_estimate_desc {
 typedef struct helio_counts {
     float expected[7];
     uint32_t realised[7]; /* sums to N_s exactly, or to 0 if there is no light to sample */
+    uint32_t first[7];    /* a light technique takes samples first ... first + realised - 1 of its pool; else 0. Filled
+                             by helio_count() */
 } helio_counts;
 
 /* One light sample of a point. The estimate is the sum of all contributions that are visible. */
@@ -162,7 +181,8 @@ typedef struct helio_sample {
 HELIO_API helio_status helio_count(const helio_pools *pools, const helio_shading_point *point,
                                    const helio_estimate_desc *desc, helio_counts *counts);
 
-/* Writes N_s samples (or none, where there is no light) for hosts that trace or shadow-map them themselves.
+/* Writes N_s samples (or none, where there is no light) for hosts that trace or shadow-map them themselves: technique
+ * by technique, and of each in the order of its pool, from helio_counts.first on.
  * samples: [desc->samples], or [64] where desc is NULL or leaves samples at 0. visibility is not called. count receives
  * how many were written. */
 HELIO_API helio_status helio_gather(const helio_pools *pools, const helio_shading_point *point,

@@ -31,12 +31,12 @@ static uint32_t camera_samples_per_pass(const helio_renderer *renderer)
     return fitting > 1 ? fitting : 1;
 }
 
-static uint32_t step_count(const helio_renderer *renderer)
+uint32_t frame_step_count(const helio_renderer *renderer)
 {
     return renderer->desc.aa * parts_per_camera_sample(renderer);
 }
 
-static frame_step plan_step(const helio_renderer *renderer, uint32_t index)
+frame_step frame_plan_step(const helio_renderer *renderer, uint32_t index)
 {
     uint32_t parts = parts_per_camera_sample(renderer), spp = renderer->desc.spp;
     uint32_t part = index % parts;
@@ -46,13 +46,13 @@ static frame_step plan_step(const helio_renderer *renderer, uint32_t index)
         .part = part,
         .samples = (uint32_t)((uint64_t)spp * (part + 1) / parts - (uint64_t)spp * part / parts),
         .is_first = index == 0,
-        .is_last = index + 1 == step_count(renderer),
+        .is_last = index + 1 == frame_step_count(renderer),
     };
 }
 
 uint32_t helio_renderer_passes(const helio_renderer *renderer)
 {
-    return plan_step(renderer, step_count(renderer) - 1).pass + 1;
+    return frame_plan_step(renderer, frame_step_count(renderer) - 1).pass + 1;
 }
 
 /* ---- creation ---- */
@@ -98,7 +98,7 @@ static helio_status create_parts(helio_renderer *renderer)
         .height = desc->height,
         .shows_background = desc->background == HELIO_BACKGROUND_ENVIRONMENT,
         .has_surfaces = desc->aovs,
-        .has_steps = step_count(renderer) > 1,
+        .has_steps = frame_step_count(renderer) > 1,
     };
     HELIO_TRY(film_create(renderer->context, &film, &renderer->film));
     return hits_create(renderer->context, desc->scene, desc->width, desc->height, &renderer->hits);
@@ -156,11 +156,9 @@ static bool run_step(struct frame *frame, const helio_frame_desc *desc, helio_fr
     return tiles_done == frame->tile_count;
 }
 
-/* Sets the frame up for the step. The hits of the only camera sample are kept from frame to frame; others make way for
- * those of the next. */
-static helio_status begin_step(helio_renderer *renderer, struct frame *frame, uint32_t index, bool keeps_hits)
+helio_status frame_begin_step(helio_renderer *renderer, struct frame *frame, uint32_t index, bool keeps_hits)
 {
-    frame->step = plan_step(renderer, index);
+    frame->step = frame_plan_step(renderer, index);
     frame->weight += frame->step.samples;
     frame->step_seed = hash_combine(hash_combine(frame->seed, frame->step.camera_sample), frame->step.part);
     frame->traces = frame->step.part == 0 && !keeps_hits;
@@ -171,16 +169,16 @@ static helio_status begin_step(helio_renderer *renderer, struct frame *frame, ui
 static helio_status run_steps(helio_renderer *renderer, struct frame *frame, const helio_frame_desc *desc,
                               helio_frame_info *info)
 {
-    uint32_t steps = step_count(renderer);
+    uint32_t steps = frame_step_count(renderer);
     bool keeps_hits = !desc->retrace && hits_belong_to(&renderer->hits, &frame->camera);
     for (uint32_t index = 0; index < steps && !info->stopped; index++) {
-        if (plan_step(renderer, index).pass == info->passes) {
+        if (frame_plan_step(renderer, index).pass == info->passes) {
             double start = frame_milliseconds();
             HELIO_TRY(helio_pools_draw(renderer->pools, desc->seed, info->passes));
             info->pools_ms += frame_milliseconds() - start;
             info->passes++;
         }
-        HELIO_TRY(begin_step(renderer, frame, index, keeps_hits));
+        HELIO_TRY(frame_begin_step(renderer, frame, index, keeps_hits));
         if (frame->traces)
             renderer->hits.complete = false;
         bool is_done = run_step(frame, desc, info, (float)index / (float)steps, 1.0f / (float)steps);
@@ -192,7 +190,7 @@ static helio_status run_steps(helio_renderer *renderer, struct frame *frame, con
     return HELIO_OK;
 }
 
-static struct frame begin_frame(const helio_renderer *renderer, const camera_frame *camera, uint32_t seed)
+struct frame frame_begin(const helio_renderer *renderer, const camera_frame *camera, uint32_t seed)
 {
     const helio_renderer_desc *desc = &renderer->desc;
     size_t tiles_across = (desc->width + TILE - 1) / TILE;
@@ -221,7 +219,7 @@ helio_status helio_renderer_render(helio_renderer *renderer, const helio_frame_d
     double start = frame_milliseconds();
     HELIO_TRY(helio_tables_update(renderer->tables));
     info.tables_ms = frame_milliseconds() - start;
-    struct frame frame = begin_frame(renderer, &camera, desc->seed);
+    struct frame frame = frame_begin(renderer, &camera, desc->seed);
     HELIO_TRY(run_steps(renderer, &frame, desc, &info));
     info.samples = frame.samples;
     info.samples_useful = frame.useful;

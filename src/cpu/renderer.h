@@ -82,11 +82,23 @@ void primary_directions(const struct frame *frame, uint32_t count, const float *
 /* Fills the tile's hits. */
 void primary_tile(const struct frame *frame, struct tile tile);
 
+/* What is to be lit in a pixel that hit something. direction: of its camera ray. */
+void shade_point(const struct frame *frame, size_t index, vec3 direction, helio_shading_point *point);
+
 /* Lights the tile's hits and adds them to the film. */
 void shade_tile(const struct frame *frame, struct tile tile, frame_counts *counts);
 
 /* The function that tells whether light reaches a point of the scene (given as user); NULL if it passes everything. */
 helio_visibility shade_visibility(const helio_renderer *renderer);
+
+/* How many steps the frames of a renderer take. */
+uint32_t frame_step_count(const helio_renderer *renderer);
+frame_step frame_plan_step(const helio_renderer *renderer, uint32_t index);
+
+/* Starts a frame, and sets it up for a step. The hits of the only camera sample are kept from frame to frame; others
+ * make way for those of the next. */
+struct frame frame_begin(const helio_renderer *renderer, const camera_frame *camera, uint32_t seed);
+helio_status frame_begin_step(helio_renderer *renderer, struct frame *frame, uint32_t index, bool keeps_hits);
 
 /* Works on the tiles of the step for a while, until all are done if slice_ms is infinite, and adds to the times of
  * info. Returns how many tiles of the step are done: the first ones. */

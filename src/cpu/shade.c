@@ -34,8 +34,7 @@ static const helio_material *material_of(const helio_renderer *renderer, size_t 
     return hits->materials ? &hits->materials[index] : &scene->material;
 }
 
-/* direction: of the camera ray */
-static void make_point(const struct frame *frame, size_t index, vec3 direction, helio_shading_point *point)
+void shade_point(const struct frame *frame, size_t index, vec3 direction, helio_shading_point *point)
 {
     const helio_renderer *renderer = frame->renderer;
     const hit_surface *surface = &renderer->hits.surfaces[index];
@@ -207,7 +206,7 @@ static void queue_pixel(const struct frame *frame, const pixel_row *row, uint32_
     uint32_t k = queue->count++;
     vec3 direction = {row->direction_x[i], row->direction_y[i], row->direction_z[i]};
     queue->pixels[k] = row->first + i;
-    make_point(frame, row->first + i, direction, &queue->points[k]);
+    shade_point(frame, row->first + i, direction, &queue->points[k]);
     if (row->kinds[i] == HIT_CATCHER)
         memcpy(queue->backgrounds[k], row->background[i], sizeof queue->backgrounds[k]);
 }

@@ -5,6 +5,11 @@
 
 #include <string.h>
 
+void helio_environment_to_map(const helio_environment *environment, const float direction[3], float in_map[3])
+{
+    vec3_to(environment_to_map(environment, vec3_from(direction)), in_map);
+}
+
 void helio_environment_radiance(const helio_environment *environment, const float direction[3], float radiance[3])
 {
     cube_position at = cube_project(environment_to_map(environment, vec3_from(direction)));
