@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "command.h"
+#include "figure_path.h"
 #include "input_source.h"
 #include "inspect.h"
 #include "map_shape.h"
@@ -58,7 +59,7 @@ static int check_options(const cli_options *options)
         code = message_usage("inspect --quiet would tell nothing; give --json FILE or --out PICTURE as well, or leave "
                              "--quiet out");
     if (code == EXIT_CODE_OK && inspect->out != NULL)
-        code = inspect_picture_check(inspect->out);
+        code = figure_path_check("out", inspect->out, "inspect");
     if (code == EXIT_CODE_OK && inspect->out != NULL && inspect->json != NULL &&
         strcmp(inspect->out, inspect->json) == 0)
         code = message_usage("--json and --out both name %s; give two files", inspect->out);

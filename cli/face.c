@@ -28,7 +28,7 @@ static uint32_t texel_of(double coordinate, uint32_t size)
     return (uint32_t)fmin(fmax(position, 0), size - 1.0);
 }
 
-size_t face_texel(uint32_t size, const double direction[3])
+int face_project(const double direction[3], double *u, double *v)
 {
     int face = 0;
     for (int i = 1; i < FACE_COUNT; i++)
@@ -36,9 +36,16 @@ size_t face_texel(uint32_t size, const double direction[3])
             face = i;
     const face_frame *frame = &face_frames[face];
     double distance = dot(frame->axis, direction);
-    uint32_t column = texel_of(dot(frame->right, direction) / distance, size);
-    uint32_t row = texel_of(dot(frame->down, direction) / distance, size);
-    return ((size_t)face * size + row) * size + column;
+    *u = dot(frame->right, direction) / distance;
+    *v = dot(frame->down, direction) / distance;
+    return face;
+}
+
+size_t face_texel(uint32_t size, const double direction[3])
+{
+    double u, v;
+    size_t face = (size_t)face_project(direction, &u, &v);
+    return (face * size + texel_of(v, size)) * size + texel_of(u, size);
 }
 
 /* Of the rectangle between a face's centre and (u, v), with the sign of u v. */

@@ -19,6 +19,9 @@ extern const char *const face_names[FACE_COUNT]; /* "+X" and so on */
 /* Not of unit length. */
 void face_direction(int face, double u, double v, double direction[3]);
 
+/* The face that a direction of any length meets, and where. */
+int face_project(const double direction[3], double *u, double *v);
+
 /* The texel of a cube [6][size][size] that a direction of any length meets. */
 size_t face_texel(uint32_t size, const double direction[3]);
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "false_colour.h"
 
+#include "srgb.h"
+
 #include <math.h>
 #include <stdbool.h>
 
@@ -27,11 +29,6 @@ static bool from_oklab(double lightness, double a, double b, double rgb[3])
     return exists;
 }
 
-static double encode(double linear)
-{
-    return linear <= 0.0031308 ? 12.92 * fmax(linear, 0) : 1.055 * pow(fmin(linear, 1), 1 / 2.4) - 0.055;
-}
-
 void false_colour(double position, double rgb[3])
 {
     double t = fmin(fmax(position, 0), 1), lightness = DARKEST + t * (LIGHTEST - DARKEST);
@@ -39,5 +36,5 @@ void false_colour(double position, double rgb[3])
     while (!from_oklab(lightness, chroma * cos(hue), chroma * sin(hue), rgb) && chroma > 0)
         chroma -= 0.002;
     for (int c = 0; c < 3; c++)
-        rgb[c] = encode(rgb[c]);
+        rgb[c] = srgb_encode(rgb[c]);
 }

@@ -100,8 +100,7 @@ void inspect_judge(inspect_findings *findings);
 int inspect_print(const inspect_findings *findings);
 int inspect_write_json(const char *path, const inspect_findings *findings);
 
-/* HELIO_OK-like: EXIT_CODE_OK if a picture can be drawn to this path, EXIT_CODE_USAGE after one sentence if not. */
-int inspect_picture_check(const char *path);
+/* To a path that figure_path_check() found good. */
 int inspect_draw(const char *path, const inspect_findings *findings, const float *cube);
 
 #endif

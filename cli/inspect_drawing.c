@@ -5,8 +5,6 @@
 
 #include <math.h>
 
-const double BACKGROUND = 0.09, INK = 0.93, FAINT = 0.62, RULE = 0.3;
-
 /* ---- scale -------------------------------------------------------------------------------- */
 
 static double lit_area(const inspect_histogram *histogram)
@@ -59,36 +57,4 @@ void colour_scale_colour(const colour_scale *scale, double stop, double rgb[3])
         false_colour(below * (stop - scale->low) / (scale->knee - scale->low), rgb);
     else
         false_colour(below + (1 - below) * (stop - scale->knee) / (scale->high - scale->knee), rgb);
-}
-
-/* ---- text --------------------------------------------------------------------------------- */
-
-void set_grey(cairo_t *cairo, double grey)
-{
-    cairo_set_source_rgb(cairo, grey, grey, grey);
-}
-
-void set_accent(cairo_t *cairo)
-{
-    cairo_set_source_rgb(cairo, 0.35, 0.95, 1);
-}
-
-void set_font(cairo_t *cairo, double size, bool bold)
-{
-    cairo_select_font_face(cairo, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
-                           bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
-    cairo_set_font_size(cairo, size);
-}
-
-double text_width(cairo_t *cairo, const char *text)
-{
-    cairo_text_extents_t extents;
-    cairo_text_extents(cairo, text, &extents);
-    return extents.x_advance;
-}
-
-void draw_text(cairo_t *cairo, double x, double y, double align, const char *text)
-{
-    cairo_move_to(cairo, x - align * text_width(cairo, text), y);
-    cairo_show_text(cairo, text);
 }

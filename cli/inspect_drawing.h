@@ -3,9 +3,8 @@
 #ifndef HELIOSTAT_CLI_INSPECT_DRAWING_H
 #define HELIOSTAT_CLI_INSPECT_DRAWING_H
 
+#include "figure_text.h"
 #include "inspect.h"
-
-#include <cairo.h>
 
 /* In pixels, or points. */
 enum { FACE_EDGE = 288, MARGIN = 24, WIDTH = 4 * FACE_EDGE + 2 * MARGIN, HEIGHT = 3 * FACE_EDGE + 2 * MARGIN };
@@ -29,15 +28,6 @@ colour_scale colour_scale_choose(const inspect_histogram *histogram);
 
 /* The colour, as false_colour(), of a luminance that is given as a power of two. */
 void colour_scale_colour(const colour_scale *scale, double stop, double rgb[3]);
-
-extern const double BACKGROUND, INK, FAINT, RULE; /* greys */
-void set_grey(cairo_t *cairo, double grey);
-void set_accent(cairo_t *cairo);
-void set_font(cairo_t *cairo, double size, bool bold);
-double text_width(cairo_t *cairo, const char *text);
-
-/* align: 0 begins at x, 0.5 is centred there, 1 ends there. */
-void draw_text(cairo_t *cairo, double x, double y, double align, const char *text);
 
 /* Both begin at the upper left corner. */
 void draw_findings(const drawing *d, double left, double top, double width);

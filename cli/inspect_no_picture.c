@@ -1,17 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * What builds without cairo have in place of inspect_picture.c. */
+#include "figure_path.h"
 #include "inspect.h"
-
-#include "message.h"
-
-int inspect_picture_check(const char *path)
-{
-    return message_usage("--out %s cannot be drawn: this build has no cairo; --json and the text tell the same", path);
-}
 
 int inspect_draw(const char *path, const inspect_findings *found, const float *cube)
 {
     (void)found;
     (void)cube;
-    return inspect_picture_check(path);
+    return figure_path_check("out", path, "inspect");
 }

@@ -17,48 +17,6 @@ static const char *last_part(const char *path)
     return slash != NULL && slash[1] != 0 ? slash + 1 : path;
 }
 
-/* Smaller if it is wide; then its start is cut off, as the end of a name tells more. */
-static void draw_name(cairo_t *cairo, double x, double y, double width, const char *name)
-{
-    enum { LARGEST = 17, SMALLEST = 11 };
-    char text[256];
-    const char *rest = name;
-    int size = LARGEST;
-    snprintf(text, sizeof text, "%s", name);
-    set_font(cairo, size, true);
-    while (size > SMALLEST && text_width(cairo, text) > width)
-        set_font(cairo, --size, true);
-    while (*rest != 0 && text_width(cairo, text) > width) {
-        rest++;
-        while ((*rest & 0xc0) == 0x80) /* in the middle of a character */
-            rest++;
-        snprintf(text, sizeof text, "\u2026%s", rest);
-    }
-    draw_text(cairo, x, y, 0, text);
-}
-
-/* Breaks lines at blanks. Returns the y of the next line. */
-static double draw_paragraph(cairo_t *cairo, double x, double y, double width, double line, const char *text)
-{
-    char row[256] = "";
-    while (*text != 0) {
-        size_t word = strcspn(text, " "), used = strlen(row);
-        char longer[2 * sizeof row];
-        snprintf(longer, sizeof longer, "%s%s%.*s", row, used ? " " : "", (int)(word < 128 ? word : 128), text);
-        if (used > 0 && text_width(cairo, longer) > width) {
-            draw_text(cairo, x, y, 0, row);
-            y += line;
-            row[0] = 0;
-            continue;
-        }
-        snprintf(row, sizeof row, "%.*s", (int)sizeof row - 1, longer);
-        text += word;
-        text += strspn(text, " ");
-    }
-    draw_text(cairo, x, y, 0, row);
-    return y + line;
-}
-
 static double draw_line(const drawing *d, drawing_box box, double y, const char *label, const char *text)
 {
     enum { LABEL_WIDTH = 92, LINE = 21 };

@@ -12,7 +12,7 @@ set(PROGRAM_SOURCES
     cli/bench_frame.c cli/bench_json.c cli/bench_light.c cli/bench_machine.c cli/bench_memcpy.c cli/bench_mesh.c
     cli/bench_peak.c cli/bench_plan.c cli/bench_pools.c cli/bench_rays.c cli/bench_result.c cli/bench_run.c
     cli/bench_scene.c cli/bench_series.c cli/bench_table.c cli/bench_team.c cli/command_bench.c cli/command_convert.c cli/command_info.c
-    cli/command_inspect.c cli/convert_plan.c cli/face.c cli/input_source.c cli/inspect_json.c cli/inspect_judge.c
+    cli/command_inspect.c cli/convert_plan.c cli/face.c cli/figure_path.c cli/input_source.c cli/inspect_json.c cli/inspect_judge.c
     cli/inspect_measure.c cli/inspect_spot.c cli/inspect_text.c cli/map_converter.c cli/map_shape.c cli/map_turn.c
     cli/command_render.c cli/contact_sheet.c cli/day_exposure.c cli/finished_frame.c cli/frame_sink.c cli/frame_warnings.c cli/light_source.c
     cli/numbered_path.c cli/output_plan.c cli/render_job.c cli/render_sequence.c cli/sequence_report.c cli/sheet_labels.c
@@ -25,7 +25,7 @@ if(HELIO_WITH_CAIRO)
     if(NOT CAIRO_FOUND)
         message(FATAL_ERROR "cairo was not found: install libcairo2-dev, or build without it by -DHELIO_WITH_CAIRO=OFF.")
     endif()
-    list(APPEND PROGRAM_SOURCES cli/false_colour.c cli/inspect_chart.c cli/inspect_drawing.c cli/inspect_panel.c
+    list(APPEND PROGRAM_SOURCES cli/cube_cross.c cli/false_colour.c cli/figure.c cli/figure_text.c cli/inspect_chart.c cli/inspect_drawing.c cli/inspect_panel.c
          cli/inspect_picture.c)
     list(APPEND FEATURE_DEFINITIONS HELIO_WITH_CAIRO=1)
 else()
