@@ -63,49 +63,13 @@ static void thin_out(contact_sheet *sheet)
 
 /* ---- thumbnails -------------------------------------------------------------------------- */
 
-/* As PNG and video show it, before the sRGB curve. Adds it to a sum. */
-static void add_shown(const float *pixel, const contact_sheet_picture *picture, double sum[3])
-{
-    float shown[3];
-    helio_tonemap_apply(picture->tonemap, picture->exposure, pixel, shown);
-    for (int c = 0; c < 3; c++)
-        sum[c] += (double)shown[c];
-}
-
-/* The mean of the pixels of columns[0] ... columns[1] - 1, rows likewise. */
-static void fill_thumb_pixel(const contact_sheet_picture *picture, const uint32_t columns[2], const uint32_t rows[2],
-                             float rgb[3])
-{
-    double sum[3] = {0};
-    for (uint32_t row = rows[0]; row < rows[1]; row++)
-        for (uint32_t column = columns[0]; column < columns[1]; column++)
-            add_shown(picture->pixels + ((size_t)row * picture->width + column) * picture->channels, picture, sum);
-    double area = (double)(columns[1] - columns[0]) * (rows[1] - rows[0]);
-    for (int c = 0; c < 3; c++)
-        rgb[c] = (float)(sum[c] / area);
-}
-
-static uint32_t edge_of(uint32_t index, uint32_t pixels, uint32_t thumb_pixels)
-{
-    return (uint32_t)((uint64_t)index * pixels / thumb_pixels);
-}
-
-void contact_sheet_add(contact_sheet *sheet, const contact_sheet_picture *picture, const char *label)
+void contact_sheet_add(contact_sheet *sheet, const shown_picture *picture, const char *label)
 {
     if (sheet->count == SHEET_CELLS)
         thin_out(sheet);
     contact_sheet_cell *cell = &sheet->cells[sheet->count++];
     snprintf(cell->label, sizeof cell->label, "%s", label);
-    float *rgb = cell->rgb;
-    for (uint32_t row = 0; row < sheet->thumb_height; row++) {
-        const uint32_t rows[2] = {edge_of(row, picture->height, sheet->thumb_height),
-                                  edge_of(row + 1, picture->height, sheet->thumb_height)};
-        for (uint32_t column = 0; column < sheet->thumb_width; column++, rgb += 3) {
-            const uint32_t columns[2] = {edge_of(column, picture->width, sheet->thumb_width),
-                                         edge_of(column + 1, picture->width, sheet->thumb_width)};
-            fill_thumb_pixel(picture, columns, rows, rgb);
-        }
-    }
+    shown_picture_shrink(picture, sheet->thumb_width, sheet->thumb_height, cell->rgb);
 }
 
 /* ---- the sheet --------------------------------------------------------------------------- */

@@ -3,13 +3,14 @@
 #ifndef HELIOSTAT_CLI_CONTACT_SHEET_H
 #define HELIOSTAT_CLI_CONTACT_SHEET_H
 
-#include <heliostat/image.h>
+#include "frame_label.h"
+#include "shown_picture.h"
 
-enum { SHEET_COLUMNS = 4, SHEET_CELLS = 12, SHEET_LABEL_SIZE = 32 };
+enum { SHEET_COLUMNS = 4, SHEET_CELLS = 12 };
 
 typedef struct contact_sheet_cell {
     float *rgb; /* [thumb_height][thumb_width][3], as it is shown, but linear */
-    char label[SHEET_LABEL_SIZE];
+    char label[FRAME_LABEL_SIZE];
 } contact_sheet_cell;
 
 typedef struct contact_sheet {
@@ -20,14 +21,6 @@ typedef struct contact_sheet {
     contact_sheet_cell cells[SHEET_CELLS];
 } contact_sheet;
 
-/* Pixels that a thumbnail is made from. */
-typedef struct contact_sheet_picture {
-    const float *pixels; /* [height][width][channels], linear, premultiplied */
-    uint32_t width, height, channels;
-    float exposure; /* stops */
-    helio_tonemap tonemap;
-} contact_sheet_picture;
-
 /* For frames of this size. False where there is no memory. A sheet that is all 0 may be released. */
 bool contact_sheet_make(contact_sheet *sheet, uint32_t width, uint32_t height, uint64_t total);
 void contact_sheet_release(contact_sheet *sheet);
@@ -36,7 +29,7 @@ void contact_sheet_release(contact_sheet *sheet);
 bool contact_sheet_wants(const contact_sheet *sheet, uint64_t position);
 
 /* Adds a frame that is wanted, of the size of all, with a label that stands beneath it. */
-void contact_sheet_add(contact_sheet *sheet, const contact_sheet_picture *picture, const char *label);
+void contact_sheet_add(contact_sheet *sheet, const shown_picture *picture, const char *label);
 
 /* Writes a PNG; there is at least one frame. HELIO_ERR_MEMORY may come without a sentence. */
 helio_status contact_sheet_write(const contact_sheet *sheet, helio_context *context, const char *path);

@@ -105,17 +105,27 @@ static int run_steps(render_job *job, helio_status (*const *steps)(render_job *)
                                         : message_failure("%s", helio_last_error());
 }
 
+int render_job_open_source(render_job *job)
+{
+    static helio_status (*const steps[])(render_job *) = {open_context, open_source};
+    return run_steps(job, steps, sizeof steps / sizeof steps[0]);
+}
+
+int render_job_open_scene(render_job *job)
+{
+    static helio_status (*const steps[])(render_job *) = {load_scene, make_environment, make_renderer};
+    return run_steps(job, steps, sizeof steps / sizeof steps[0]);
+}
+
 int render_job_open(render_job *job, const cli_options *options)
 {
-    static helio_status (*const sources[])(render_job *) = {open_context, open_source};
-    static helio_status (*const scenes[])(render_job *) = {load_scene, make_environment, make_renderer};
     *job = (render_job){0};
     int code = render_plan_make(&job->plan, options);
     if (code == EXIT_CODE_OK)
-        code = run_steps(job, sources, sizeof sources / sizeof sources[0]);
+        code = render_job_open_source(job);
     if (code == EXIT_CODE_OK)
         code = render_plan_settle(&job->plan, job->source);
-    return code == EXIT_CODE_OK ? run_steps(job, scenes, sizeof scenes / sizeof scenes[0]) : code;
+    return code == EXIT_CODE_OK ? render_job_open_scene(job) : code;
 }
 
 void render_job_close(render_job *job)
@@ -195,15 +205,20 @@ static uint32_t frame_seed(uint32_t seed, uint64_t index)
     return hash;
 }
 
-helio_status render_job_render(render_job *job, uint64_t index, stats_frame *stats, bool *is_whole)
+helio_frame_desc render_job_frame(render_job *job, uint64_t index)
 {
     const cli_options *options = job->plan.options;
-    const helio_frame_desc desc = {
+    return (helio_frame_desc){
         .camera = job->camera,
         .seed = options->seed_mode[1] == 'r' ? frame_seed(options->seed, index) : options->seed,
         .progress = progress_update,
         .user = &job->progress,
     };
+}
+
+helio_status render_job_render(render_job *job, uint64_t index, stats_frame *stats, bool *is_whole)
+{
+    const helio_frame_desc desc = render_job_frame(job, index);
     helio_frame_info info = {0};
     helio_status status = helio_renderer_render(job->renderer, &desc, &info);
     *is_whole = status == HELIO_OK && !info.stopped;
@@ -214,7 +229,7 @@ helio_status render_job_render(render_job *job, uint64_t index, stats_frame *sta
     stats->shade_ms = info.shade_ms;
     stats->samples = info.samples;
     stats->samples_useful = info.samples_useful;
-    if (*is_whole && options->verbose)
+    if (*is_whole && job->plan.options->verbose)
         message_note("frame %" PRIu64 ": tables %.1f ms, pools %.1f ms, camera rays %.1f ms, shading %.1f ms; %" PRIu64
                      " samples, %.1f %% of them useful, %" PRIu64 " shadow rays",
                      index, info.tables_ms, info.pools_ms, info.primary_ms, info.shade_ms, info.samples,

@@ -26,6 +26,12 @@ typedef struct render_job {
 /* Understands the options, opens the source and starts reading it, and loads the scene. Returns an exit code; one
  * sentence on stderr tells what failed. */
 int render_job_open(render_job *job, const cli_options *options);
+
+/* The same in two halves, for commands that check for themselves what they write, before and between: the plan is to be
+ * made first, and to be settled once the source is open. */
+int render_job_open_source(render_job *job);
+int render_job_open_scene(render_job *job);
+
 void render_job_close(render_job *job);
 
 /* The next frame of the source; rgb and sky are NULL at the end. */
@@ -34,6 +40,9 @@ helio_status render_job_next(render_job *job, helio_source_frame *frame, stats_f
 /* Makes it the light of the scene. light: what was seen in it. */
 helio_status render_job_light(render_job *job, const helio_source_frame *frame, helio_environment_info *light,
                               stats_frame *stats);
+
+/* What the renderer is asked for when it renders frame `index`. */
+helio_frame_desc render_job_frame(render_job *job, uint64_t index);
 
 /* Renders what is lit now. *is_whole is false where a signal stopped it. */
 helio_status render_job_render(render_job *job, uint64_t index, stats_frame *stats, bool *is_whole);

@@ -60,10 +60,9 @@ static int check_scene(render_plan *plan)
     return check_camera(plan);
 }
 
-static int choose_light(render_plan *plan)
+static int choose_light(render_plan *plan, bool may_be_sequence)
 {
     const cli_options *options = plan->options;
-    bool may_be_sequence = options->out == NULL || plan->sink != SINK_PICTURE;
     int code = input_source_describe(options, &plan->source);
     return code != EXIT_CODE_OK ? code : light_source_choose(options->env, may_be_sequence, &plan->light);
 }
@@ -124,21 +123,40 @@ static void warn_of_idle_source(const render_plan *plan)
         message_warning("--day-frames changes nothing with --env %s; it is for sky:day", source);
 }
 
-int render_plan_make(render_plan *plan, const cli_options *options)
+static int begin(render_plan *plan, const cli_options *options)
 {
     *plan = (render_plan){.options = options};
     int code = check_program(options);
     if (code == EXIT_CODE_OK)
         code = parse_words(plan);
-    if (code == EXIT_CODE_OK)
-        code = check_scene(plan);
+    return code == EXIT_CODE_OK ? check_scene(plan) : code;
+}
+
+static int choose_inputs(render_plan *plan, bool may_be_sequence)
+{
+    int code = choose_light(plan, may_be_sequence);
+    return code == EXIT_CODE_OK ? choose_mesh(plan) : code;
+}
+
+int render_plan_make(render_plan *plan, const cli_options *options)
+{
+    int code = begin(plan, options);
     if (code == EXIT_CODE_OK)
         code = output_plan_check(plan);
-    if (code == EXIT_CODE_OK)
-        code = choose_light(plan);
-    if (code == EXIT_CODE_OK)
-        code = choose_mesh(plan);
-    return code;
+    return code == EXIT_CODE_OK ? choose_inputs(plan, options->out == NULL || plan->sink != SINK_PICTURE) : code;
+}
+
+int render_plan_make_scene(render_plan *plan, const cli_options *options, bool may_be_sequence)
+{
+    int code = begin(plan, options);
+    return code == EXIT_CODE_OK ? choose_inputs(plan, may_be_sequence) : code;
+}
+
+void render_plan_settle_scene(render_plan *plan, const helio_source *source)
+{
+    plan->light.kind = helio_source_get_info(source).kind;
+    warn_of_idle_sampling(plan);
+    warn_of_idle_source(plan);
 }
 
 int render_plan_settle(render_plan *plan, helio_source *source)
@@ -147,8 +165,7 @@ int render_plan_settle(render_plan *plan, helio_source *source)
     int code = output_plan_settle(plan, source);
     if (code != EXIT_CODE_OK)
         return code;
-    warn_of_idle_sampling(plan);
-    warn_of_idle_source(plan);
+    render_plan_settle_scene(plan, source);
     output_plan_warn(plan);
     return EXIT_CODE_OK;
 }

@@ -36,6 +36,11 @@ int render_plan_make(render_plan *plan, const cli_options *options);
  * replaced? */
 int render_plan_settle(render_plan *plan, helio_source *source);
 
+/* Both of these for commands that make something else of a scene than pictures of it: without a look at what render
+ * writes. may_be_sequence: where --env was not given, take a day. */
+int render_plan_make_scene(render_plan *plan, const cli_options *options, bool may_be_sequence);
+void render_plan_settle_scene(render_plan *plan, const helio_source *source);
+
 /* Removes the folder that was made, if nothing came into it. */
 void render_plan_release(const render_plan *plan);
 

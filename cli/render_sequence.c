@@ -9,7 +9,6 @@
 #include "output_file.h"
 #include "sequence_report.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -87,20 +86,10 @@ static bool begin(render_sequence *sequence, const helio_source_frame *frame, st
 
 /* ---- each frame -------------------------------------------------------------------------- */
 
-static void make_label(const helio_source_frame *frame, char label[SHEET_LABEL_SIZE])
+static void show(render_sequence *sequence, const helio_source_frame *frame, const shown_picture *picture)
 {
-    if (frame->sky == NULL || isnan(frame->hours)) {
-        snprintf(label, SHEET_LABEL_SIZE, "frame %" PRIu64, frame->index);
-        return;
-    }
-    unsigned minutes = (unsigned)floor(fmin(fmax(frame->hours, 0), 24) * 60 + 0.5);
-    snprintf(label, SHEET_LABEL_SIZE, "%02u:%02u", minutes / 60, minutes % 60);
-}
-
-static void show(render_sequence *sequence, const helio_source_frame *frame, const contact_sheet_picture *picture)
-{
-    char label[SHEET_LABEL_SIZE];
-    make_label(frame, label);
+    char label[FRAME_LABEL_SIZE];
+    frame_label_make(frame, label);
     if (sequence->job->plan.options->contact_sheet != NULL && contact_sheet_wants(&sequence->sheet, sequence->frames))
         contact_sheet_add(&sequence->sheet, picture, label);
 }
@@ -109,12 +98,12 @@ static bool write_frame(render_sequence *sequence, const helio_source_frame *fra
 {
     const render_job *job = sequence->job;
     const helio_picture picture = helio_renderer_picture(job->renderer);
-    const contact_sheet_picture shown = {.pixels = picture.rgba,
-                                         .width = picture.width,
-                                         .height = picture.height,
-                                         .channels = 4,
-                                         .exposure = sequence->exposure,
-                                         .tonemap = job->plan.tonemap};
+    const shown_picture shown = {.pixels = picture.rgba,
+                                 .width = picture.width,
+                                 .height = picture.height,
+                                 .channels = 4,
+                                 .exposure = sequence->exposure,
+                                 .tonemap = job->plan.tonemap};
     double start = machine_milliseconds();
     if (frame_sink_add(&sequence->sink, frame->index, &picture) != HELIO_OK)
         return fail_with(sequence, sequence->sink.error);
@@ -126,7 +115,7 @@ static bool write_frame(render_sequence *sequence, const helio_source_frame *fra
 static void show_finished(render_sequence *sequence, const helio_source_frame *frame, const finished_frame *finished)
 {
     const helio_image *image = finished->image;
-    contact_sheet_picture shown = {.pixels = image->rgb, .width = image->width, .height = image->height, .channels = 3};
+    shown_picture shown = {.pixels = image->rgb, .width = image->width, .height = image->height, .channels = 3};
     if (!finished->is_shown) {
         shown.exposure = sequence->exposure;
         shown.tonemap = sequence->job->plan.tonemap;
