@@ -106,13 +106,8 @@ static json_t *report_object(const bench *b)
 
 int bench_json_write(const bench *b)
 {
-    const char *path = b->plan->options->bench.json;
     json_t *object = report_object(b);
-    int code = EXIT_CODE_OK;
-    if (strcmp(path, "-") != 0)
-        code = json_file_write("json", path, object);
-    else if (json_dumpf(object, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) != 0 || putchar('\n') == EOF)
-        code = message_failure("standard output cannot be written");
+    int code = json_file_write_or_print("json", b->plan->options->bench.json, object);
     json_decref(object);
     return code;
 }

@@ -24,6 +24,7 @@ int command_render(const cli_options *options);
 int command_bench(const cli_options *options);
 int command_convert(const cli_options *options);
 int command_inspect(const cli_options *options);
+int command_samples(const cli_options *options);
 int command_info(const cli_options *options);
 int command_help(const cli_options *options);
 

@@ -77,6 +77,16 @@ double draw_paragraph(cairo_t *cairo, double x, double y, double width, double l
     return y + line;
 }
 
+double draw_entry(cairo_t *cairo, const text_box *box, double y, const char *label, const char *text)
+{
+    enum { LINE = 21 };
+    set_font(cairo, 13, false);
+    set_grey(cairo, FAINT);
+    draw_text(cairo, box->left, y, 0, label);
+    set_grey(cairo, INK);
+    return draw_paragraph(cairo, box->left + box->label_width, y, box->width - box->label_width, LINE, text);
+}
+
 void draw_ring(cairo_t *cairo, double x, double y, double radius)
 {
     cairo_new_path(cairo);

@@ -21,6 +21,13 @@ void draw_name(cairo_t *cairo, double x, double y, double width, const char *nam
 /* Breaks lines at blanks. Returns the y of the next line. */
 double draw_paragraph(cairo_t *cairo, double x, double y, double width, double line, const char *text);
 
+typedef struct text_box {
+    double left, width, label_width;
+} text_box;
+
+/* A faint label, and beside it a text that may take several lines. Returns the y of the next line. */
+double draw_entry(cairo_t *cairo, const text_box *box, double y, const char *label, const char *text);
+
 /* In the accent's colour, to be seen on anything. */
 void draw_ring(cairo_t *cairo, double x, double y, double radius);
 

@@ -48,10 +48,10 @@ static const help_entry camera_forms[] = {
 };
 
 const help_section help_forms[] = {
-    {"SRC", source_forms, COUNT(source_forms), COMMAND_RENDER | COMMAND_CONVERT | COMMAND_INSPECT},
-    {"--layout L", layout_forms, COUNT(layout_forms), COMMAND_RENDER | COMMAND_CONVERT | COMMAND_INSPECT},
-    {"--material SPEC", material_forms, COUNT(material_forms), COMMAND_RENDER},
-    {"--camera SPEC", camera_forms, COUNT(camera_forms), COMMAND_RENDER},
+    {"SRC", source_forms, COUNT(source_forms), COMMANDS_OF_SCENES | COMMAND_CONVERT | COMMAND_INSPECT},
+    {"--layout L", layout_forms, COUNT(layout_forms), COMMANDS_OF_SCENES | COMMAND_CONVERT | COMMAND_INSPECT},
+    {"--material SPEC", material_forms, COUNT(material_forms), COMMANDS_OF_SCENES},
+    {"--camera SPEC", camera_forms, COUNT(camera_forms), COMMANDS_OF_SCENES},
 };
 const size_t help_form_count = COUNT(help_forms);
 
@@ -78,6 +78,10 @@ static const help_entry examples[] = {
     {"heliostat convert 'capture/*.hdr' --half --out small/frame_%04d.exr", "a whole sequence"},
     {"heliostat inspect studio.hdr --out studio.png", "what is in a map, in words and as a picture"},
     {"heliostat inspect clip.mov --frames 24..24 --json -", "one frame of a video, for a script"},
+    {"heliostat samples --pixel 640,330 --out samples.pdf",
+     "where the 64 samples of a pixel are, as the paper's Figure 3"},
+    {"heliostat samples --env sky:day --contact-sheet day.png", "the same pixel at six times of a day"},
+    {"heliostat samples --strategy face+brdf --json -", "counts and all samples, for a script"},
     {"heliostat bench --stages tables,frame --json bench.json", "how fast this machine is"},
 };
 const help_section help_examples = {"Examples", examples, COUNT(examples), COMMAND_ALL};

@@ -2,10 +2,6 @@
 #include "inspect.h"
 
 #include "json_file.h"
-#include "message.h"
-
-#include <stdio.h>
-#include <string.h>
 
 static json_t *file_object(const inspect_findings *found)
 {
@@ -106,13 +102,7 @@ static json_t *findings_object(const inspect_findings *found)
 int inspect_write_json(const char *path, const inspect_findings *found)
 {
     json_t *object = findings_object(found);
-    int code = EXIT_CODE_OK;
-    if (strcmp(path, "-") != 0)
-        code = json_file_write("json", path, object);
-    else if (json_dumpf(object, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) == 0)
-        printf("\n");
-    else
-        code = message_failure("standard output cannot be written");
+    int code = json_file_write_or_print("json", path, object);
     json_decref(object);
     return code;
 }

@@ -43,3 +43,13 @@ int json_file_write(const char *option, const char *path, const json_t *object)
     unlink(temporary);
     return code;
 }
+
+int json_file_write_or_print(const char *option, const char *path, const json_t *object)
+{
+    if (strcmp(path, "-") != 0)
+        return json_file_write(option, path, object);
+    if (json_dumpf(object, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) != 0)
+        return message_failure("standard output cannot be written");
+    printf("\n");
+    return EXIT_CODE_OK;
+}

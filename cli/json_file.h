@@ -14,4 +14,7 @@ json_t *json_whole(uint64_t value);
  * failure. object may be NULL: there was no memory for it. Returns an exit code. */
 int json_file_write(const char *option, const char *path, const json_t *object);
 
+/* The same, but to standard output where path is "-". */
+int json_file_write_or_print(const char *option, const char *path, const json_t *object);
+
 #endif

@@ -17,6 +17,8 @@ const cli_command command_table[] = {
      "write an environment map in another layout, size or file format", command_convert},
     {"inspect", COMMAND_INSPECT, "inspect SRC [options]",
      "tell what an environment map holds: layout, range, flux, bad pixels, the sun", command_inspect},
+    {"samples", COMMAND_SAMPLES, "samples [--pixel X,Y] [options]",
+     "show where the light samples of a pixel are, which of them are used, and by how many", command_samples},
     {"bench", COMMAND_BENCH, "bench [options]", "measure how fast each stage is on this machine", command_bench},
     {"info", COMMAND_INFO, "info", "show the version, what this build can do, and the processor", command_info},
     {"help", COMMAND_HELP, "help [command] [--man]", "print the help of a command, or the manual page", command_help},

@@ -217,8 +217,9 @@ static int take_word(cli_options *options, unsigned command, const char *command
         return message_usage(
             "%s takes one input, but both %s and %s are given; put a pattern such as '*.exr' in quotes", command_name,
             options->input, word);
-    if (command == COMMAND_RENDER)
-        return message_usage("render does not know what '%s' is; write --mesh or --env before a file's name", word);
+    if (command & COMMANDS_OF_SCENES)
+        return message_usage("%s does not know what '%s' is; write --mesh or --env before a file's name", command_name,
+                             word);
     return message_usage("%s does not know what '%s' is; heliostat %s --help shows what it takes", command_name, word,
                          command_name);
 }

@@ -15,7 +15,9 @@ enum {
     COMMAND_BENCH = 1 << 3,
     COMMAND_CONVERT = 1 << 4,
     COMMAND_INSPECT = 1 << 5,
-    COMMAND_ALL = COMMAND_RENDER | COMMAND_INFO | COMMAND_HELP | COMMAND_BENCH | COMMAND_CONVERT | COMMAND_INSPECT
+    COMMAND_SAMPLES = 1 << 6,
+    COMMANDS_OF_SCENES = COMMAND_RENDER | COMMAND_SAMPLES, /* which light a mesh */
+    COMMAND_ALL = COMMANDS_OF_SCENES | COMMAND_INFO | COMMAND_HELP | COMMAND_BENCH | COMMAND_CONVERT | COMMAND_INSPECT
 };
 
 /* Lists, separated by commas, that bench walks through; some are single values in other commands. */
@@ -44,6 +46,12 @@ typedef struct convert_options {
 typedef struct inspect_options {
     const char *json, *out;
 } inspect_options;
+
+/* What samples alone takes, or with other defaults. */
+typedef struct samples_options {
+    const char *pixel, *strategy, *out, *contact_sheet, *json;
+    uint32_t day_frames; /* 0: not given */
+} samples_options;
 
 /* What the command line says. A pointer that is NULL means that the option was not given and has no fixed default. */
 typedef struct cli_options {
@@ -77,6 +85,7 @@ typedef struct cli_options {
     bench_options bench;
     convert_options convert;
     inspect_options inspect;
+    samples_options samples;
 
     const char *backend;
     uint32_t threads; /* 0: one per logical core */
@@ -106,6 +115,7 @@ typedef enum option_group {
     GROUP_PICTURE,
     GROUP_CONVERT,
     GROUP_INSPECT,
+    GROUP_SAMPLES,
     GROUP_BENCH,
     GROUP_PROGRAM,
     GROUP_COUNT

@@ -31,6 +31,12 @@ size_t output_file_folder_length(const char *path)
     return slash != NULL ? (size_t)(slash - path) + 1 : 0;
 }
 
+const char *output_file_last_part(const char *path)
+{
+    const char *part = path + output_file_folder_length(path);
+    return part[0] != 0 ? part : path;
+}
+
 bool output_file_is_same_folder(const char *path, const char *other_path)
 {
     const char *const paths[] = {path, other_path};

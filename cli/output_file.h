@@ -22,6 +22,9 @@ bool output_file_has_extension(const char *path, const char *extension);
 /* Length of the part up to the last slash, the slash included. */
 size_t output_file_folder_length(const char *path);
 
+/* What follows it; all of the path where nothing does. */
+const char *output_file_last_part(const char *path);
+
 /* Opens a new file beside path, to be renamed when it is complete; its name stays within temporary. NULL, with errno,
  * if that cannot be. */
 FILE *output_file_open(const char *path, char *temporary, size_t size);

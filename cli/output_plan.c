@@ -155,7 +155,7 @@ void output_plan_warn(const render_plan *plan)
 
 /* ---- once the source is known ------------------------------------------------------------ */
 
-static bool is_one_frame(const render_plan *plan)
+bool output_plan_is_one_frame(const render_plan *plan)
 {
     const frame_range *frames = &plan->options->frames;
     return frames->is_given && frames->first == frames->last;
@@ -165,7 +165,7 @@ static int choose_out(render_plan *plan, bool is_dynamic)
 {
     if (plan->options->out == NULL)
         return set_out(plan, is_dynamic ? NUMBERED_OUT : PICTURE_OUT);
-    if (plan->sink != SINK_PICTURE || !is_dynamic || is_one_frame(plan))
+    if (plan->sink != SINK_PICTURE || !is_dynamic || output_plan_is_one_frame(plan))
         return EXIT_CODE_OK;
     const char *dot = strrchr(plan->out, '.');
     size_t folder = output_file_folder_length(plan->out);
@@ -219,8 +219,7 @@ static int make_folder(render_plan *plan)
     return message_failure("the folder %s cannot be made: %s; give --out another path", folder, strerror(errno));
 }
 
-/* What goes beside the frames must be none of them. */
-static int check_beside(const render_plan *plan, const char *option, const char *path, helio_source *source)
+int output_plan_check_beside(const render_plan *plan, const char *option, const char *path, helio_source *source)
 {
     const char *const inputs[] = {plan->mesh, NULL};
     numbered_path names;
@@ -239,12 +238,19 @@ static int check_beside(const render_plan *plan, const char *option, const char 
 static int check_reports(const render_plan *plan, helio_source *source)
 {
     const char *stats = plan->options->stats, *sheet = plan->options->contact_sheet;
-    int code = check_beside(plan, "stats", stats, source);
+    int code = output_plan_check_beside(plan, "stats", stats, source);
     if (code == EXIT_CODE_OK)
-        code = check_beside(plan, "contact-sheet", sheet, source);
+        code = output_plan_check_beside(plan, "contact-sheet", sheet, source);
     if (code == EXIT_CODE_OK && stats != NULL && sheet != NULL && output_file_is_same(stats, sheet))
         code = message_usage("--stats and --contact-sheet both name %s; give two files", sheet);
     return code;
+}
+
+int output_plan_check_names(const render_plan *plan, helio_source *source)
+{
+    const char *const inputs[] = {plan->mesh, NULL};
+    int code = check_glob(plan);
+    return code == EXIT_CODE_OK ? check_sink(plan, source, inputs) : code;
 }
 
 int output_plan_settle(render_plan *plan, helio_source *source)

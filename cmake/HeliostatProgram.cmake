@@ -14,11 +14,12 @@ set(PROGRAM_SOURCES
     cli/bench_scene.c cli/bench_series.c cli/bench_table.c cli/bench_team.c cli/command_bench.c cli/command_convert.c cli/command_info.c
     cli/command_inspect.c cli/convert_plan.c cli/face.c cli/figure_path.c cli/input_source.c cli/inspect_json.c cli/inspect_judge.c
     cli/inspect_measure.c cli/inspect_spot.c cli/inspect_text.c cli/map_converter.c cli/map_shape.c cli/map_turn.c
-    cli/command_render.c cli/contact_sheet.c cli/day_exposure.c cli/finished_frame.c cli/frame_label.c cli/frame_sink.c cli/frame_warnings.c cli/light_source.c
+    cli/command_render.c cli/command_samples.c cli/contact_sheet.c cli/day_exposure.c cli/finished_frame.c cli/frame_label.c cli/frame_sink.c cli/frame_warnings.c cli/light_source.c
     cli/numbered_path.c cli/output_plan.c cli/render_job.c cli/render_sequence.c cli/sequence_report.c cli/sheet_labels.c cli/shown_picture.c
     cli/help.c cli/help_texts.c cli/interrupt.c cli/json_file.c cli/list.c
     cli/machine.c cli/main.c cli/manual.c cli/message.c cli/number.c cli/option_table.c cli/options.c cli/output_file.c
-    cli/progress.c cli/render_plan.c cli/stats.c cli/suggestion.c)
+    cli/progress.c cli/render_plan.c cli/samples_gather.c cli/samples_json.c cli/samples_pixel.c cli/samples_plan.c
+    cli/samples_words.c cli/stats.c cli/suggestion.c)
 
 if(HELIO_WITH_CAIRO)
     pkg_check_modules(CAIRO QUIET IMPORTED_TARGET cairo)
@@ -26,10 +27,11 @@ if(HELIO_WITH_CAIRO)
         message(FATAL_ERROR "cairo was not found: install libcairo2-dev, or build without it by -DHELIO_WITH_CAIRO=OFF.")
     endif()
     list(APPEND PROGRAM_SOURCES cli/cube_cross.c cli/false_colour.c cli/figure.c cli/figure_text.c cli/inspect_chart.c cli/inspect_drawing.c cli/inspect_panel.c
-         cli/inspect_picture.c)
+         cli/inspect_picture.c cli/samples_bars.c cli/samples_figure.c cli/samples_map.c cli/samples_marks.c
+         cli/samples_panel.c cli/samples_sheet.c)
     list(APPEND FEATURE_DEFINITIONS HELIO_WITH_CAIRO=1)
 else()
-    list(APPEND PROGRAM_SOURCES cli/inspect_no_picture.c)
+    list(APPEND PROGRAM_SOURCES cli/inspect_no_picture.c cli/samples_no_picture.c)
 endif()
 
 # The arithmetic peak that bench compares with, for each instruction set as the kernels.
