@@ -21,9 +21,12 @@ typedef struct samples_drawing {
 /* How many pixels a figure has for a point, by the end of its path. */
 int samples_detail(const char *path);
 
-/* The map as the render shows it, darkened below the point's horizon; then the samples and the normal. */
+/* The map as the render shows it, darkened below the point's horizon; upon it the pools, then the counts of each face
+ * in the corners of the cross, then the point's own samples and its normal. */
 void samples_draw_map(const samples_drawing *d);
-void samples_draw_marks(const samples_drawing *d);
+void samples_draw_pools(const samples_drawing *d);
+void samples_draw_face_labels(const samples_drawing *d, double font_size);
+void samples_draw_samples(const samples_drawing *d);
 
 /* What the marks look like that stand for samples. */
 typedef enum samples_mark {
@@ -68,8 +71,5 @@ void samples_draw_table(const samples_drawing *d, double left, double top, doubl
 
 /* The counts as bars, one for each technique. */
 void samples_draw_bars(const samples_drawing *d, double left, double bottom, double width);
-
-/* Counts of each face, in the corners of the cross. */
-void samples_draw_face_labels(const samples_drawing *d, double font_size);
 
 #endif

@@ -33,21 +33,27 @@ static uint32_t pack(const float rgb[3])
     return pixel;
 }
 
-/* NULL, or a surface with an error, where there is no memory: then nothing is drawn, and cairo keeps that in mind. */
-static cairo_surface_t *make_surface(const shown_picture *picture, uint32_t width, uint32_t height)
+static void fill_surface(cairo_surface_t *surface, const float *rgb, size_t width, size_t height)
 {
-    float *rgb = malloc((size_t)width * height * 3 * sizeof *rgb);
-    cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, rgb ? (int)width : -1, (int)height);
     unsigned char *data = cairo_image_surface_get_data(surface);
-    int stride = cairo_image_surface_get_stride(surface);
-    if (rgb != NULL)
-        shown_picture_shrink(picture, width, height, rgb);
+    size_t stride = (size_t)cairo_image_surface_get_stride(surface);
     for (size_t row = 0; data != NULL && row < height; row++)
         for (size_t column = 0; column < width; column++) {
             uint32_t pixel = pack(rgb + 3 * (row * width + column));
-            memcpy(data + row * (size_t)stride + 4 * column, &pixel, sizeof pixel);
+            memcpy(data + row * stride + 4 * column, &pixel, sizeof pixel);
         }
     cairo_surface_mark_dirty(surface);
+}
+
+/* Where there is no memory, one that is in error: cairo keeps that in mind for the whole figure. */
+static cairo_surface_t *make_surface(const shown_picture *picture, uint32_t width, uint32_t height)
+{
+    float *rgb = malloc((size_t)width * height * 3 * sizeof *rgb);
+    if (rgb == NULL)
+        return cairo_image_surface_create(CAIRO_FORMAT_RGB24, -1, -1);
+    cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)width, (int)height);
+    shown_picture_shrink(picture, width, height, rgb);
+    fill_surface(surface, rgb, width, height);
     free(rgb);
     return surface;
 }
@@ -142,8 +148,9 @@ static void draw_figure(cairo_t *cairo, const void *data)
     set_grey(cairo, BACKGROUND);
     cairo_paint(cairo);
     samples_draw_map(&d);
-    samples_draw_marks(&d);
+    samples_draw_pools(&d);
     samples_draw_face_labels(&d, 13);
+    samples_draw_samples(&d);
     samples_draw_render(&d, left, SAMPLES_MARGIN, WIDTH - SAMPLES_MARGIN - left, FACE_EDGE - GAP);
     draw_words(&d);
 }

@@ -134,7 +134,7 @@ static void place(const samples_drawing *d, const float direction[3], double *x,
     cube_cross_place(&d->cross, wide, x, y);
 }
 
-static void draw_pools(const samples_drawing *d)
+void samples_draw_pools(const samples_drawing *d)
 {
     const samples_findings *found = d->view->found;
     size_t count = (size_t)found->passes * found->pool_count * found->pool_length;
@@ -160,7 +160,7 @@ static samples_mark mark_of(const point_sample *sample)
 }
 
 /* The best ones last, so that they are on top. */
-static void draw_samples(const samples_drawing *d)
+static void draw_fates(const samples_drawing *d)
 {
     const samples_findings *found = d->view->found;
     for (int fate = SAMPLE_FATES - 1; fate >= 0; fate--)
@@ -173,11 +173,10 @@ static void draw_samples(const samples_drawing *d)
         }
 }
 
-void samples_draw_marks(const samples_drawing *d)
+void samples_draw_samples(const samples_drawing *d)
 {
     double x, y;
-    draw_pools(d);
-    draw_samples(d);
+    draw_fates(d);
     place(d, d->view->found->normal, &x, &y);
     samples_draw_mark(d->cairo, MARK_NORMAL, x, y, d->size);
 }

@@ -48,7 +48,7 @@ static void tell_mark(const samples_findings *found, samples_mark mark, char tex
         break;
     case MARK_SHADOWED:
         if (has_light && has_shadows)
-            count_text(text, shadowed, "in shadow: the object is in their way");
+            count_text(text, shadowed, "in shadow: something is in their way");
         break;
     case MARK_USELESS:
         if (has_light)

@@ -89,8 +89,9 @@ static void draw_cell(const samples_drawing *d)
 {
     char text[64];
     samples_draw_map(d);
-    samples_draw_marks(d);
+    samples_draw_pools(d);
     samples_draw_face_labels(d, 10);
+    samples_draw_samples(d);
     samples_draw_render(d, 2 * FACE_EDGE + 10, 0, 2 * FACE_EDGE - 10, FACE_EDGE - 10);
     set_grey(d->cairo, INK);
     draw_name(d->cairo, 0, 18, FACE_EDGE - 10, d->view->found->label);
@@ -171,9 +172,9 @@ static void draw_sheet(cairo_t *cairo, const void *data)
     cairo_paint(cairo);
     draw_head(cairo, sheet);
     for (int i = 0; i < (int)sheet->count; i++) {
-        double x = SAMPLES_MARGIN + (double)(i % COLUMNS) * (CELL_WIDTH + GAP);
-        double y = SAMPLES_MARGIN + HEAD_HEIGHT + (double)(i / COLUMNS) * (CELL_HEIGHT + GAP);
-        cairo_set_source_surface(cairo, sheet->cells[i], x, y);
+        int column = i % COLUMNS, row = i / COLUMNS;
+        cairo_set_source_surface(cairo, sheet->cells[i], SAMPLES_MARGIN + column * (CELL_WIDTH + GAP),
+                                 SAMPLES_MARGIN + HEAD_HEIGHT + row * (CELL_HEIGHT + GAP));
         cairo_paint(cairo);
     }
     draw_foot(cairo, sheet);

@@ -6,9 +6,11 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* ---- what is lit ------------------------------------------------------------------------------ */
 
@@ -18,12 +20,6 @@ enum { SIZE = 16, FACE_TEXELS = SIZE * SIZE, MAP_FLOATS = 6 * FACE_TEXELS * 3 };
 #define SCENE "--mesh tetrahedron.obj --size 64x48 --env map.pfm --layout strip --env-size 16"
 
 static const char *const face_names[6] = {"+X", "-X", "+Y", "-Y", "+Z", "-Z"};
-
-/* axis, right and down of each face, as include/heliostat/environment.h has them. */
-static const double frames[6][3][3] = {
-    {{1, 0, 0}, {0, 0, -1}, {0, -1, 0}}, {{-1, 0, 0}, {0, 0, 1}, {0, -1, 0}}, {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},
-    {{0, -1, 0}, {1, 0, 0}, {0, 0, -1}}, {{0, 0, 1}, {1, 0, 0}, {0, -1, 0}},  {{0, 0, -1}, {-1, 0, 0}, {0, -1, 0}},
-};
 
 static void set_texel(float *map, int face, int row, int column, float radiance)
 {
@@ -443,6 +439,12 @@ static void without_a_pixel_one_of_the_object_is_chosen(void **state)
 
 enum { EDGE = 320, MARGIN = 24, FIGURE_WIDTH = 4 * EDGE + 2 * MARGIN, FIGURE_HEIGHT = 3 * EDGE + 2 * MARGIN };
 
+/* axis, right and down of each face, as include/heliostat/environment.h has them. */
+static const double frames[6][3][3] = {
+    {{1, 0, 0}, {0, 0, -1}, {0, -1, 0}}, {{-1, 0, 0}, {0, 0, 1}, {0, -1, 0}}, {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},
+    {{0, -1, 0}, {1, 0, 0}, {0, 0, -1}}, {{0, 0, 1}, {1, 0, 0}, {0, -1, 0}},  {{0, 0, -1}, {-1, 0, 0}, {0, -1, 0}},
+};
+
 /* Where each face is in the cross, in faces. */
 static const int places[6][2] = {{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}};
 
@@ -761,6 +763,22 @@ static void the_same_seed_gives_the_same_figure_on_any_number_of_threads(void **
     assert_false(is_same_file("a.png", "c.png") || is_same_file("a.json", "c.json"));
 }
 
+static void an_interrupted_sequence_keeps_its_figures(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER | NEEDS_PNG);
+    pid_t child = start_program("samples --mesh tetrahedron.obj --size 64x48 --env-size 16 --env sky:day --day-frames "
+                                "100000 --out day_%d.png --contact-sheet sheet.png --json seen.json");
+    for (int i = 0; i < 6000 && !exists("day_1.png"); i++) /* a minute at most */
+        usleep(10000);
+    assert_int_equal(kill(child, SIGINT), 0);
+    assert_int_equal(finish_program(child, NULL), 128 + SIGINT);
+    assert_non_null(strstr(program_err, " figures written to day_%d.png"));
+    assert_true(exists("day_0.png") && exists("day_1.png") && !exists("sheet.png") && !exists("seen.json"));
+    long figures = strtol(strstr(program_err, "stopped; ") + strlen("stopped; "), NULL, 10);
+    assert_int_equal(count_files("."), figures + 1); /* with tetrahedron.obj, and nothing half-written */
+}
+
 static void a_full_disk_leaves_the_old_figure(void **state)
 {
     (void)state;
@@ -854,6 +872,7 @@ int main(void)
         program_test(figures_of_all_kinds_are_written),
         program_test(sequences_become_figures_and_a_sheet),
         program_test(the_same_seed_gives_the_same_figure_on_any_number_of_threads),
+        program_test(an_interrupted_sequence_keeps_its_figures),
         program_test(a_full_disk_leaves_the_old_figure),
 #endif
         program_test(text_tells_what_json_tells),
