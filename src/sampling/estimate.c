@@ -289,13 +289,24 @@ static helio_status resolve_directions(const helio_shading_point *given, helio_s
     return check_unit("view", point->view);
 }
 
+static bool is_same_colour(const float a[3], const float b[3])
+{
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+static bool is_same_material(const helio_material *a, const helio_material *b)
+{
+    return a->kind == b->kind && is_same_colour(a->diffuse, b->diffuse) && is_same_colour(a->specular, b->specular) &&
+           a->exponent == b->exponent && a->metallic == b->metallic && a->roughness == b->roughness;
+}
+
 /* The renderer, which makes its points itself, does without. */
 static helio_status resolve_points(uint32_t count, const helio_shading_point *given, helio_shading_point *points)
 {
     for (uint32_t i = 0; i < count; i++) {
         HELIO_TRY(resolve_directions(&given[i], &points[i]));
         /* Neighbours mostly have the same. */
-        if (i == 0 || memcmp(&given[i].material, &given[i - 1].material, sizeof given[i].material) != 0)
+        if (i == 0 || !is_same_material(&given[i].material, &given[i - 1].material))
             HELIO_TRY(helio_material_check(&given[i].material));
     }
     return HELIO_OK;
