@@ -714,7 +714,7 @@ static map copy_cleaned(const map *m)
     return cleaned;
 }
 
-/* Rows with faults are read by other code than those without, and both sum in the same order. */
+/* Pixels beside faults are read by other code than the rest. */
 static void expect_same_as_cleaned(helio_layout layout, uint32_t width, uint32_t height, uint32_t size, double chance)
 {
     map m = make_random_map(layout, width, height, 41);
@@ -1091,6 +1091,35 @@ static void bad_channels_are_counted_once_per_pixel(void **state)
         }
     }
     helio_environment_destroy(environment);
+}
+
+/* Also where no texel looks: in the corners of crosses and of discs. */
+static void a_fault_is_counted_wherever_it_is(void **state)
+{
+    (void)state;
+    const map maps[] = {
+        {HELIO_LAYOUT_LATLONG, 8, 4, NULL},    {HELIO_LAYOUT_LATLONG, 7, 3, NULL},
+        {HELIO_LAYOUT_STRIP, 12, 2, NULL},     {HELIO_LAYOUT_STRIP_OPENEXR, 3, 18, NULL},
+        {HELIO_LAYOUT_CROSS_V, 6, 8, NULL},    {HELIO_LAYOUT_CROSS_H, 8, 6, NULL},
+        {HELIO_LAYOUT_OCTAHEDRAL, 6, 6, NULL}, {HELIO_LAYOUT_EQUAL_AREA, 6, 6, NULL},
+        {HELIO_LAYOUT_ANGULAR, 7, 7, NULL},    {HELIO_LAYOUT_MIRRORBALL, 8, 8, NULL},
+    };
+    for (size_t i = 0; i < sizeof maps / sizeof *maps; i++) {
+        map m = make_random_map(maps[i].layout, maps[i].width, maps[i].height, 43);
+        helio_environment_info info;
+        helio_environment *environment = make_from_map(shared_context, &m, 4, &info);
+        assert_true(info.bad.nan + info.bad.infinite + info.bad.negative == 0);
+        for (size_t pixel = 0; pixel < (size_t)m.width * m.height; pixel++) {
+            float *channel = m.rgb + pixel * 3 + pixel % 3, good = *channel;
+            *channel = pixel % 2 ? NAN : -1;
+            assert_ok(helio_environment_update(environment, m.rgb, &info));
+            if (info.bad.nan != pixel % 2 || info.bad.negative != (pixel + 1) % 2 || info.bad.infinite != 0)
+                fail_msg("%s: the fault of pixel %zu is not counted", helio_layout_name(m.layout), pixel);
+            *channel = good;
+        }
+        helio_environment_destroy(environment);
+        free(m.rgb);
+    }
 }
 
 static void any_bits_give_a_finite_cube(void **state)
@@ -1578,6 +1607,7 @@ int main(void)
         cmocka_unit_test(axes_drawn_in_the_latlong_picture_are_ours),
         cmocka_unit_test(axes_drawn_in_the_cube_picture_are_ours),
         cmocka_unit_test(bad_channels_are_counted_once_per_pixel),
+        cmocka_unit_test(a_fault_is_counted_wherever_it_is),
         cmocka_unit_test(any_bits_give_a_finite_cube),
         cmocka_unit_test(rotation_turns_light_from_z_to_x),
         cmocka_unit_test(flip_mirrors_x_before_the_rotation),

@@ -26,7 +26,6 @@ helio_status environment_resolve_map(uint32_t width, uint32_t height, helio_layo
 static void release_map(helio_context *context, environment_map *map)
 {
     resampler_destroy(context, map->resampler);
-    context_release(context, map->row_readings);
     context_release(context, map->row_faults);
 }
 
@@ -35,10 +34,9 @@ static helio_status create_map(helio_context *context, uint32_t cube_size, uint3
 {
     *map = (environment_map){.width = width, .height = height, .layout = layout};
     map->row_faults = context_allocate(context, height, sizeof *map->row_faults);
-    map->row_readings = context_allocate(context, height, sizeof *map->row_readings);
-    helio_status status = map->row_faults == NULL || map->row_readings == NULL
-                              ? HELIO_ERR_MEMORY
-                              : resampler_create(context, layout, width, height, cube_size, &map->resampler);
+    helio_status status = map->row_faults != NULL
+                              ? resampler_create(context, layout, width, height, cube_size, &map->resampler)
+                              : HELIO_ERR_MEMORY;
     if (status != HELIO_OK)
         release_map(context, map);
     return status == HELIO_ERR_MEMORY

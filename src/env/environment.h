@@ -16,7 +16,6 @@ typedef struct environment_map {
     helio_layout layout;
     resampler *resampler;
     helio_bad_pixels *row_faults; /* [height] */
-    uint8_t *row_readings;        /* [height], see resampler_run() */
 } environment_map;
 
 struct helio_environment {

@@ -1,40 +1,23 @@
 /* SPDX-License-Identifier: MIT
  * overlap.h - which pixels of a map each texel of the cube covers, and with what share of its solid angle.
  *
- * Each layout has generators of overlaps. They depend on the shapes alone, so they are found once; a frame only sums.
- */
+ * Each layout has generators of overlaps. They depend on the shapes alone, so they are found once, and kept in lists
+ * (overlap_list.h); a frame only sums. */
 #ifndef HELIOSTAT_SRC_OVERLAP_H
 #define HELIOSTAT_SRC_OVERLAP_H
 
 #include <heliostat/core.h>
 
-enum { OVERLAP_RUN_LIMIT = 32, OVERLAP_AHEAD = 16 };
+enum { OVERLAP_RUN_LIMIT = 32 };
 
 /* A rectangle of pixels under one texel, at most OVERLAP_RUN_LIMIT of them. A lat-long map is taken in quarters of its
  * width, so that it can be turned by quarters and mirrored without wrapping a run around. */
 typedef struct overlap_run {
     uint32_t column; /* of the first pixel, in its quarter */
     uint16_t row;
-    uint8_t count;                                /* pixels in a row; each has a weight */
-    uint8_t quarter : 2, last : 1, more_rows : 5; /* last of its texel; rows, not counting the first */
+    uint8_t count;                      /* pixels in a row; each has a weight */
+    uint8_t quarter : 2, more_rows : 5; /* rows, not counting the first */
 } overlap_run;
-
-/* A rectangle of texels, and where its runs and weights begin. They follow each other in rows. */
-typedef struct overlap_tile {
-    uint32_t first_row, end_row, first_column, end_column;
-    size_t run, weight;
-    uint16_t least_map_row, greatest_map_row; /* of its runs */
-} overlap_tile;
-
-/* The texels of a quarter of a face, those with u <= 0 and v <= 0. They come in tiles that see a small part of the map
- * each, so that what rows of texels have in common is still in the cache. A weight is the part of the texel's solid
- * angle that the pixel covers; a texel's weights sum to 1. */
-typedef struct overlap_list {
-    size_t tile_count;
-    overlap_tile *tiles;
-    overlap_run *runs; /* OVERLAP_AHEAD more of them than there are, zero, so that one may look ahead */
-    float *weights;
-} overlap_list;
 
 /* One face of the cube over one map. */
 typedef struct overlap_geometry {
@@ -47,14 +30,16 @@ typedef struct overlap_geometry {
     double *column_sines; /* lat-long: [map_width / 4 + 1], sine of column k's border's angle, 2 pi k / map_width */
 } overlap_geometry;
 
-/* Takes the overlaps of a tile, one texel after the other. */
+/* Takes the overlaps of the texels of a row, one after the other. A weight is the part of the texel's solid angle that
+ * the pixel covers; a texel's weights sum to 1. */
 typedef struct overlap_writer {
     overlap_run *runs; /* NULL: they are only counted */
     float *weights;
-    size_t run_count, weight_count; /* so far */
-    size_t texel_run, texel_weight; /* before this texel */
-    overlap_run latest;             /* the run written last */
-    double area;                    /* of this texel so far */
+    uint32_t *run_ends, *weight_ends;      /* of the texels */
+    size_t texel, run_count, weight_count; /* so far */
+    size_t texel_run, texel_weight;        /* before this texel */
+    overlap_run latest;                    /* the run written last */
+    double area;                           /* of this texel so far */
 } overlap_writer;
 
 /* Writes the overlaps of the texels first_column ... end_column - 1 of a row. A writer that only counts may get any
@@ -82,10 +67,6 @@ void overlap_geometry_release(helio_context *context, overlap_geometry *geometry
  * the first of them and its place. Pixels with an area of 0 are left out. */
 void overlap_write(overlap_writer *writer, overlap_run begin, const double *areas, uint32_t count);
 void overlap_end_texel(overlap_writer *writer);
-
-helio_status overlap_list_create(helio_context *context, uint32_t size, overlap_generator generate,
-                                 const void *geometry, overlap_list *list);
-void overlap_list_release(helio_context *context, overlap_list *list); /* {0} is fine */
 
 /* Face coordinate of the border before texel `index` of a cube of this size. */
 static inline double texel_border(uint32_t index, uint32_t size)

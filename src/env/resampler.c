@@ -70,7 +70,7 @@ static helio_status plan_latlong(helio_context *context, resampler *plan)
 {
     /* Symmetric about each axis are only widths that four divides; other maps are taken with their columns in parts. */
     plan->part_shift = plan->width % 4 == 0 ? 0 : plan->width % 2 == 0 ? 1 : 2;
-    plan->list_rows = plan->height;
+    plan->sees_all = true;
     plan->list_count = 2;
     overlap_list *side = &plan->lists[0], *pole = &plan->lists[1];
     overlap_geometry geometry;
@@ -139,9 +139,9 @@ static const face_layout *find_face_layout(const resampler *plan, helio_layout l
     }
 }
 
-static void add_face(resampler *plan, uint32_t face, const face_place *place)
+static void add_face(resampler *plan, uint32_t face, const face_place *place, int64_t size)
 {
-    int64_t size = plan->list_rows, row = place->row * size, column = place->column * size, last = size - 1;
+    int64_t row = place->row * size, column = place->column * size, last = size - 1;
     for (int quarter = 0; quarter < 4; quarter++) {
         bool right = quarter & 1, below = quarter & 2;
         bool rows = place->mirror_rows != below, columns = place->mirror_columns != right;
@@ -158,7 +158,7 @@ static helio_status plan_faces(helio_context *context, helio_layout layout, resa
 {
     const face_layout *faces = find_face_layout(plan, layout);
     uint32_t face_size = plan->width / faces->columns;
-    plan->list_rows = face_size;
+    plan->sees_all = layout != HELIO_LAYOUT_CROSS_V && layout != HELIO_LAYOUT_CROSS_H;
     plan->list_count = 1;
     overlap_geometry geometry;
     helio_status status =
@@ -167,7 +167,7 @@ static helio_status plan_faces(helio_context *context, helio_layout layout, resa
         status = overlap_list_create(context, plan->size, overlap_strip, &geometry, &plan->lists[0]);
     overlap_geometry_release(context, &geometry);
     for (uint32_t face = 0; face < CUBE_FACES; face++)
-        add_face(plan, face, &faces->places[face]);
+        add_face(plan, face, &faces->places[face], face_size);
     return status;
 }
 
@@ -197,7 +197,7 @@ static helio_status plan_square(helio_context *context, helio_layout layout, res
     int up_axis = projection_of(layout)->up_axis;
     square_overlaps overlaps;
     helio_status status = square_overlaps_create(context, layout, plan->width, plan->size, &overlaps);
-    plan->list_rows = plan->height;
+    plan->sees_all = layout != HELIO_LAYOUT_ANGULAR && layout != HELIO_LAYOUT_MIRRORBALL;
     for (int i = 0; i < 6 && status == HELIO_OK; i++) {
         int signs[3] = {-1, 0, 0};
         signs[up_axis] = 1;
@@ -214,14 +214,12 @@ static helio_status plan_square(helio_context *context, helio_layout layout, res
 
 /* ---- life ---- */
 
-static helio_status allocate_readings(helio_context *context, resampler *plan)
+static helio_status allocate_spaces(helio_context *context, resampler *plan)
 {
-    plan->readings = context_allocate(context, (size_t)plan->group_count * plan->list_rows, sizeof *plan->readings);
-    if (plan->readings == NULL)
-        return HELIO_ERR_MEMORY;
-    for (int i = 0; i < plan->group_count; i++)
-        plan->groups[i].readings = plan->readings + (size_t)i * plan->list_rows;
-    return HELIO_OK;
+    uint32_t threads = helio_context_threads(context);
+    plan->space_count = threads < MAX_SPACES ? threads : MAX_SPACES;
+    plan->spaces = context_allocate(context, plan->space_count, sizeof *plan->spaces);
+    return plan->spaces != NULL ? HELIO_OK : HELIO_ERR_MEMORY;
 }
 
 helio_status resampler_create(helio_context *context, helio_layout layout, uint32_t width, uint32_t height,
@@ -237,7 +235,7 @@ helio_status resampler_create(helio_context *context, helio_layout layout, uint3
                           : projection_of(layout) != NULL ? plan_square(context, layout, plan)
                                                           : plan_faces(context, layout, plan);
     if (status == HELIO_OK)
-        status = allocate_readings(context, plan);
+        status = allocate_spaces(context, plan);
     if (status != HELIO_OK) {
         resampler_destroy(context, plan);
         return status;
@@ -252,6 +250,11 @@ void resampler_destroy(helio_context *context, resampler *plan)
         return;
     for (int i = 0; i < plan->list_count; i++)
         overlap_list_release(context, &plan->lists[i]);
-    context_release(context, plan->readings);
+    context_release(context, plan->spaces);
     context_release(context, plan);
+}
+
+bool resampler_sees_all(const resampler *plan)
+{
+    return plan->sees_all;
 }

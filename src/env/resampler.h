@@ -14,16 +14,11 @@ helio_status resampler_create(helio_context *context, helio_layout layout, uint3
                               uint32_t cube_size, resampler **out);
 void resampler_destroy(helio_context *context, resampler *resampler);
 
-/* How the pixels of a row of the map are read; the results are those of pixel_clean() in any case. */
-typedef enum row_reading {
-    ROW_AS_IT_IS,
-    ROW_CLAMPED,  /* negative channels as 0 */
-    ROW_BY_PIXEL, /* one by one, each through pixel_clean() */
-} row_reading;
+/* Whether every pixel of a map is under some texel: not the corners of crosses and discs. */
+bool resampler_sees_all(const resampler *resampler);
 
-/* readings: [height], row_reading of each row; ROW_BY_PIXEL for those with NaN or infinite channels, and for the one
- * behind which nothing may be read. cube: [6][R][R][3], finite and >= 0. Takes no memory. */
-void resampler_run(helio_context *context, const resampler *resampler, const map_pixels *pixels,
-                   const uint8_t *readings, float *cube);
+/* Pixels count as pixel_clean() makes them. Returns whether some were no light. cube: [6][R][R][3], finite and >= 0.
+ * Takes no memory. */
+bool resampler_run(helio_context *context, resampler *resampler, const map_pixels *pixels, float *cube);
 
 #endif

@@ -4,45 +4,67 @@
 #include "core/context.h"
 #include "sampling/kernels.h"
 
+#include <stdatomic.h>
+
 typedef struct frame_work {
     struct resampling resampling;
     const kernel_set *kernels;
+    resampling_space *spaces;
+    atomic_size_t next; /* tile of all lists */
+    atomic_bool faults;
 } frame_work;
 
-/* All lists have the same tiles. Quarters that share the middle texels of a face are resampled by the same thread. */
-static void resample_tile(void *data, size_t index)
+/* The list that holds a tile of all; the tile's index becomes one of this list. */
+static const overlap_list *find_list(const resampler *plan, size_t *tile)
 {
-    const frame_work *work = data;
-    const resampler *plan = work->resampling.plan;
-    for (int i = 0; i < plan->group_count; i++)
-        work->kernels->resample(&work->resampling, &plan->groups[i], &plan->groups[i].list->tiles[index]);
+    const overlap_list *list = plan->lists, *end = list + plan->list_count;
+    for (; list < end && *tile >= list->tile_count; list++)
+        *tile -= list->tile_count;
+    return list < end ? list : NULL;
 }
 
-static void prepare_group(struct resampling *work, int index, const uint8_t *readings)
+/* Takes tiles while there are some. Which ones changes nothing in the result. */
+static void resample_tiles(void *data, size_t thread)
+{
+    frame_work *work = data;
+    const resampler *plan = work->resampling.plan;
+    for (;;) {
+        size_t tile = atomic_fetch_add_explicit(&work->next, 1, memory_order_relaxed);
+        const overlap_list *list = find_list(plan, &tile);
+        if (list == NULL)
+            return;
+        for (const view_group *group = plan->groups; group < plan->groups + plan->group_count; group++)
+            if (group->list == list &&
+                work->kernels->resample(&work->resampling, group, &list->tiles[tile], &work->spaces[thread]))
+                atomic_store_explicit(&work->faults, true, memory_order_relaxed);
+    }
+}
+
+static void find_origins(struct resampling *work, int index)
 {
     const resampler *plan = work->plan;
-    const view_group *group = &plan->groups[index];
-    for (uint32_t row = 0; row < plan->list_rows; row++) {
-        uint8_t reading = plan->part_shift != 0 ? ROW_BY_PIXEL : ROW_AS_IT_IS;
-        for (int v = 0; v < GROUP_VIEWS; v++) {
-            uint8_t own = readings[group->views[v].row_offset + group->views[v].row_sign * row];
-            reading = own > reading ? own : reading;
-        }
-        group->readings[row] = reading;
-    }
     for (int i = 0; i < MAP_QUARTERS * GROUP_VIEWS; i++) {
-        const quarter_view *view = &group->views[i % GROUP_VIEWS];
+        const quarter_view *view = &plan->groups[index].views[i % GROUP_VIEWS];
         int64_t column = quarter_view_column(plan, view, i / GROUP_VIEWS, 0) >> plan->part_shift;
         work->origins[index][i / GROUP_VIEWS][i % GROUP_VIEWS] = map_pixels_at(&work->pixels, view->row_offset, column);
     }
 }
 
-void resampler_run(helio_context *context, const resampler *plan, const map_pixels *pixels, const uint8_t *readings,
-                   float *cube)
+/* Pixels are read four numbers at a time, which must not leave the map. */
+static const unsigned char *find_last_pixel(const resampler *plan, const map_pixels *pixels)
+{
+    uint32_t numbers = pixels->pixel_bytes / (pixels->half ? sizeof(uint16_t) : sizeof(float));
+    return numbers > 3 ? NULL : map_pixels_at(pixels, pixels->row_bytes > 0 ? plan->height - 1 : 0, plan->width - 1);
+}
+
+bool resampler_run(helio_context *context, resampler *plan, const map_pixels *pixels, float *cube)
 {
     frame_work work = {.resampling = {.plan = plan, .pixels = *pixels, .cube = cube},
-                       .kernels = kernels_of(context_isa(context))};
+                       .kernels = kernels_of(context_isa(context)),
+                       .spaces = plan->spaces};
+    work.resampling.last_pixel = find_last_pixel(plan, pixels);
     for (int i = 0; i < plan->group_count; i++)
-        prepare_group(&work.resampling, i, readings);
-    context_parallel_for(context, plan->lists[0].tile_count, resample_tile, &work);
+        find_origins(&work.resampling, i);
+    context_parallel_for(context, plan->space_count, resample_tiles, &work);
+    return work.faults;
 }

@@ -10,7 +10,8 @@ struct resampling {
     const resampler *plan;
     map_pixels pixels;
     float *cube;
-    /* The pixel where a view finds row 0 of the runs and column 0 of a quarter. */
+    const unsigned char *last_pixel; /* in memory: nothing may be read behind it; NULL if there is alpha behind it */
+    /* The pixel where a view finds row 0 of the list and column 0 of a quarter. */
     const unsigned char *origins[MAX_GROUPS][MAP_QUARTERS][GROUP_VIEWS];
 };
 

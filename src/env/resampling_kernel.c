@@ -1,41 +1,36 @@
 /* SPDX-License-Identifier: MIT
  *
- * A frame: sums of weighted pixels, in an order that depends on the plan alone. */
+ * A frame: the pixels that a tile sees are brought together, then sums of them, weighted, in an order that depends on
+ * the plan alone. */
+#include "core/context.h"
 #include "env/resampling.h"
 #include "image/pixel_fault.h"
 #include "sampling/kernels.h"
 
 #include <string.h>
 
-/* Red, green, blue and a number that nobody looks at: a vector register on every machine, and the same arithmetic. */
+/* ---- pixels ---- */
+
+/* Red, green, blue and a number that nobody looks at. */
 typedef float rgbx __attribute__((vector_size(16)));
 typedef uint32_t rgbx_bits __attribute__((vector_size(16)));
 
-/* Sums of this many weighted pixels stay in floats. */
-enum { FLOAT_SUM_LIMIT = 64 };
-
-typedef struct view_sums {
-    rgbx a, b, c, d;
-} view_sums;
-
-/* How pixels are read: known to the compiler, which makes loops for each. */
-typedef struct reading {
-    bool half, clamp;
-    bool careful;         /* some rows are to be read pixel by pixel */
-    uint32_t pixel_bytes; /* 0: not known to the compiler */
-} reading;
-
-/* ---- pixels ---- */
-
-/* Also reads the number behind the pixel. Numbers are finite; without clamp not negative, but -0 may come either way.
- */
-static inline rgbx load(const unsigned char *pixel, reading how)
+/* Bits 31 are set where a number is not from 0 to the brightest: its bits are beyond those of the limit, so that the
+ * sum overflows into the sign, or it has the sign already, as -0 has. */
+static inline rgbx load_floats(const unsigned char *pixel, rgbx_bits *suspicions)
 {
-    if (!how.half) {
-        rgbx loaded;
-        memcpy(&loaded, pixel, sizeof loaded);
-        return how.clamp ? (rgbx)((rgbx_bits)loaded & (rgbx_bits)(loaded > (rgbx){0})) : loaded;
-    }
+    const float brightest = PIXEL_BRIGHTEST;
+    rgbx_bits bits;
+    uint32_t limit;
+    memcpy(&limit, &brightest, sizeof limit);
+    memcpy(&bits, pixel, sizeof bits);
+    *suspicions |= bits | (bits + (INT32_MAX - limit));
+    return (rgbx)bits;
+}
+
+/* IEEE binary16, whose finite numbers are all below the limit; exact. */
+static inline rgbx load_halves(const unsigned char *pixel, rgbx_bits *suspicions)
+{
     typedef uint16_t halves __attribute__((vector_size(8)));
     halves numbers;
     memcpy(&numbers, pixel, sizeof numbers);
@@ -44,183 +39,263 @@ static inline rgbx load(const unsigned char *pixel, reading how)
                     rebias = (rgbx_bits){112, 112, 112, 112} << 23;
     rgbx_bits bits = (wide & 0x7fff) << 13, small = (rgbx_bits)((wide & 0x7c00) == 0);
     rgbx normal = (rgbx)(bits + rebias), subnormal = (rgbx)(bits + least_normal) - (rgbx)least_normal;
-    bits = ((rgbx_bits)subnormal & small) | ((rgbx_bits)normal & ~small);
-    return (rgbx)(how.clamp ? bits & (rgbx_bits)((wide & 0x8000) == 0) : bits);
+    *suspicions |= (wide | (wide + 0x0400)) << 16;
+    return (rgbx)(((rgbx_bits)subnormal & small) | ((rgbx_bits)normal & ~small));
 }
 
-static rgbx sum_by_pixel(const struct resampling *work, const quarter_view *view, const overlap_cursor *at, rgbx sum)
+/* A span of a window as a view sees it. */
+typedef struct seen_span {
+    const unsigned char *first; /* pixel */
+    ptrdiff_t step;             /* to the next one, bytes */
+    unsigned count;
+} seen_span;
+
+/* Copies pixels that are probably all light. Returns false if they are not. Reads a number more than there are. to: the
+ * first pixel's place in a view; others follow at the distance of pixels of all views. */
+static inline __attribute__((always_inline)) bool copy_light(const seen_span *span, bool half, float *to)
+{
+    rgbx_bits suspicions = {0};
+    const unsigned char *from = span->first;
+#pragma GCC unroll 4
+    for (unsigned i = 0; i < span->count; i++, from += span->step, to += GROUP_VIEWS * 4) {
+        rgbx pixel = half ? load_halves(from, &suspicions) : load_floats(from, &suspicions);
+        memcpy(to, &pixel, sizeof pixel);
+    }
+    return (suspicions[0] | suspicions[1] | suspicions[2]) >> 31 == 0;
+}
+
+/* Copies any pixels, or parts of them, cleaned. Returns whether some were no light. */
+static __attribute__((noinline)) bool copy_any(const struct resampling *work, const quarter_view *view,
+                                               const overlap_window *window, const overlap_span *span, float *to)
 {
     const resampler *plan = work->plan;
-    const overlap_run *run = at->run;
-    const float *weight = at->weight;
-    for (int64_t i = 0; i <= run->more_rows; i++) {
-        int64_t row = view->row_offset + view->row_sign * (run->row + i);
-        int64_t column = quarter_view_column(plan, view, run->quarter, run->column);
-        for (unsigned k = 0; k < run->count; k++, weight++, column += view->column_sign) {
-            float rgb[3];
-            map_pixels_read(&work->pixels, row, column >> plan->part_shift, rgb);
-            pixel_clean(rgb, rgb);
-            sum += (rgbx){rgb[0], rgb[1], rgb[2], 0} * (rgbx){*weight, *weight, *weight, *weight};
-        }
+    const int64_t row = view->row_offset + view->row_sign * ((int64_t)window->row + span->row);
+    bool faults = false;
+    for (int64_t i = 0; i < span->count; i++, to += GROUP_VIEWS * 4) {
+        int64_t column = quarter_view_column(plan, view, window->quarter, (int64_t)window->column + span->column + i);
+        map_pixels_read(&work->pixels, row, column >> plan->part_shift, to);
+        faults |= pixel_fault_of(to) != PIXEL_GOOD;
+        pixel_clean(to, to);
     }
-    return sum;
+    return faults;
 }
 
-/* The same sums, but pixel by pixel, and whatever is in them. */
-static __attribute__((noinline)) view_sums add_run_by_pixel(const struct resampling *work, const view_group *group,
-                                                            overlap_cursor at, view_sums sums)
+static inline seen_span see_span(const struct resampling *work, const view_group *group, int v,
+                                 const overlap_window *window, const overlap_span *span)
 {
-    return (view_sums){
-        sum_by_pixel(work, &group->views[0], &at, sums.a),
-        sum_by_pixel(work, &group->views[1], &at, sums.b),
-        sum_by_pixel(work, &group->views[2], &at, sums.c),
-        sum_by_pixel(work, &group->views[3], &at, sums.d),
-    };
+    const quarter_view *view = &group->views[v];
+    const ptrdiff_t row_step = work->pixels.row_bytes * view->row_sign;
+    const ptrdiff_t step = work->pixels.pixel_bytes * view->column_sign;
+    const unsigned char *origin = work->origins[group - work->plan->groups][window->quarter][v];
+    return (seen_span){origin + row_step * ((ptrdiff_t)window->row + span->row) +
+                           step * ((ptrdiff_t)window->column + span->column),
+                       step, span->count};
+}
+
+/* Sends for the pixels of a span: no machine guesses them, as each row of the map is read for a few texels only. */
+static inline void fetch_span(const seen_span *seen)
+{
+    const ptrdiff_t length = seen->step * (ptrdiff_t)(seen->count - 1);
+    const unsigned char *from = length > 0 ? seen->first : seen->first + length;
+    const unsigned char *last = length > 0 ? seen->first + length : seen->first;
+    for (; from < last; from += CONTEXT_ALIGNMENT)
+        __builtin_prefetch(from);
+    __builtin_prefetch(last);
+}
+
+/* Copies a span for a view. Returns whether some pixels were no light. */
+static inline bool copy_span(const struct resampling *work, const view_group *group, int v,
+                             const overlap_window *window, const overlap_span *span, float *to)
+{
+    const seen_span seen = see_span(work, group, v, window, span);
+    const unsigned char *end = seen.first + seen.step * (ptrdiff_t)(seen.count - 1);
+    if (seen.first != work->last_pixel && end != work->last_pixel &&
+        (work->pixels.half ? copy_light(&seen, true, to) : copy_light(&seen, false, to)))
+        return false;
+    return copy_any(work, &group->views[v], window, span, to);
+}
+
+static bool copy_window(const struct resampling *work, const view_group *group, const overlap_window *window,
+                        struct resampling_space *space)
+{
+    enum { AHEAD = 2 };
+    const overlap_span *span = group->list->spans + window->span, *end = span + window->span_count;
+    const bool whole = work->plan->part_shift == 0; /* pixels, and no parts of them */
+    bool faults = false;
+    for (; span < end; span++) {
+        float *to = space->pixels[(unsigned)span->row * window->pitch + span->column];
+        for (int v = 0; v < GROUP_VIEWS; v++, to += 4) {
+            if (whole && span + AHEAD < end) {
+                seen_span ahead = see_span(work, group, v, window, span + AHEAD);
+                fetch_span(&ahead);
+            }
+            faults |= whole ? copy_span(work, group, v, window, span, to)
+                            : copy_any(work, &group->views[v], window, span, to);
+        }
+    }
+    return faults;
+}
+
+/* ---- sums ---- */
+
+/* The numbers of a pixel in all views, in as many registers as they take. */
+enum { NUMBERS = GROUP_VIEWS * 4, REGISTERS = NUMBERS / HELIO_LANES };
+typedef float lanes __attribute__((vector_size(sizeof(float) * HELIO_LANES)));
+typedef struct view_sums {
+    lanes part[REGISTERS];
+} view_sums;
+
+/* columns: 0 where the compiler does not know. */
+static inline __attribute__((always_inline)) view_sums sum_part(const float *pixel, const float *weight, unsigned rows,
+                                                                unsigned columns, unsigned known_columns,
+                                                                ptrdiff_t pitch)
+{
+    const unsigned count = known_columns != 0 ? known_columns : columns;
+    view_sums sums = {0};
+    for (; rows > 0; rows--, pixel += pitch * NUMBERS, weight += count) {
+        for (unsigned k = 0; k < count; k++) {
+            for (int i = 0; i < REGISTERS; i++) {
+                lanes numbers;
+                memcpy(&numbers, __builtin_assume_aligned(pixel + k * NUMBERS + i * HELIO_LANES, sizeof numbers),
+                       sizeof numbers);
+                sums.part[i] += numbers * weight[k];
+            }
+        }
+    }
+    return sums;
+}
+
+static inline void put_sums(const view_sums *sums, bool adds, float *texel)
+{
+    view_sums before = {0};
+    texel = __builtin_assume_aligned(texel, sizeof *sums);
+    if (adds)
+        memcpy(&before, texel, sizeof before);
+    for (int i = 0; i < REGISTERS; i++)
+        before.part[i] += sums->part[i];
+    memcpy(texel, &before, sizeof before);
+}
+
+static inline void put_deep_sums(const view_sums *sums, bool adds, double *texel)
+{
+    for (int i = 0; i < NUMBERS; i++)
+        texel[i] = (adds ? texel[i] : 0.0) + (double)sums->part[i / HELIO_LANES][i % HELIO_LANES];
+}
+
+static inline __attribute__((always_inline)) void sum_batch(struct resampling_space *space, ptrdiff_t pitch, bool deep,
+                                                            unsigned known_columns, overlap_cursor *cursor)
+{
+    const overlap_batch *batch = cursor->batch;
+    const overlap_part *part = cursor->part, *end = part + batch->count;
+    const float *weight = cursor->weight;
+    const unsigned rows = batch->rows, columns = batch->columns, weights = rows * columns;
+    const bool adds = batch->adds;
+    for (; part < end; part++, weight += weights) {
+        view_sums sums = sum_part(space->pixels[part->pixel], weight, rows, columns, known_columns, pitch);
+        if (deep)
+            put_deep_sums(&sums, adds, space->deep_texels[part->texel]);
+        else
+            put_sums(&sums, adds, space->texels[part->texel]);
+    }
+    cursor->part = part;
+    cursor->weight = weight;
+}
+
+/* Sums a row of texels. */
+static void sum_texels(struct resampling_space *space, ptrdiff_t pitch, bool deep, overlap_cursor *at)
+{
+    for (bool last = false; !last; at->batch++) {
+        last = at->batch->last;
+        if (deep)
+            sum_batch(space, pitch, true, 0, at);
+        else if (at->batch->columns == 1)
+            sum_batch(space, pitch, false, 1, at);
+        else if (at->batch->columns == 2)
+            sum_batch(space, pitch, false, 2, at);
+        else if (at->batch->columns == 3)
+            sum_batch(space, pitch, false, 3, at);
+        else
+            sum_batch(space, pitch, false, 0, at);
+    }
 }
 
 /* ---- texels ---- */
 
-static bool is_by_pixel(const view_group *group, const overlap_run *run)
+static void narrow(struct resampling_space *space, uint32_t count)
 {
-    for (unsigned i = 0; i <= run->more_rows; i++)
-        if (group->readings[run->row + i] == ROW_BY_PIXEL)
-            return true;
-    return false;
+    for (uint32_t texel = 0; texel < count; texel++)
+        for (int i = 0; i < NUMBERS; i++)
+            space->texels[texel][i] = (float)space->deep_texels[texel][i];
 }
 
-static inline __attribute__((always_inline)) void add_pixel(const unsigned char *a, const unsigned char *b,
-                                                            const unsigned char *c, const unsigned char *d,
-                                                            float weight, reading how, view_sums *sums)
+/* Writes the texels of a view from the left to the right: each overwrites the number that the one before had too many;
+ * the last has none, as the texel behind it may be another thread's. */
+static inline void write_texels(const float *from, ptrdiff_t step, uint32_t count, float *to)
 {
-    rgbx w = {weight, weight, weight, weight};
-    sums->a += load(a, how) * w;
-    sums->b += load(b, how) * w;
-    sums->c += load(c, how) * w;
-    sums->d += load(d, how) * w;
+    for (uint32_t i = 1; i < count; i++, from += step, to += 3)
+        memcpy(to, from, sizeof(rgbx));
+    memcpy(to, from, 3 * sizeof *to);
 }
 
-/* Sums the pixels of a texel in all views, or as many as may be summed in floats. Returns whether that was all. The
- * views are spelled out so that their sums stay in registers. What a later run needs is fetched ahead: no machine
- * guesses it, as each row of the map is read for a few texels only. (At a change of quarters or tiles that is of no
- * use, and does no harm.) */
-static inline __attribute__((always_inline)) bool sum_runs(const struct resampling *work, const view_group *group,
-                                                           reading how, overlap_cursor *cursor, view_sums *sums)
-{
-    const unsigned char *const(*origins)[GROUP_VIEWS] = work->origins[group - work->plan->groups];
-    const ptrdiff_t row_bytes = work->pixels.row_bytes;
-    const ptrdiff_t pixel_bytes = how.pixel_bytes != 0 ? how.pixel_bytes : work->pixels.pixel_bytes;
-    const overlap_run *run = cursor->run;
-    const float *weight = cursor->weight, *limit = weight + FLOAT_SUM_LIMIT;
-    bool last;
-    do {
-        if (how.careful && is_by_pixel(group, run)) {
-            *sums = add_run_by_pixel(work, group, (overlap_cursor){run, weight}, *sums);
-            weight += run->count * (run->more_rows + 1);
-        } else {
-            const unsigned char *const *origin = origins[run->quarter];
-            const unsigned char *a = origin[0], *b = origin[1], *c = origin[2], *d = origin[3];
-            const overlap_run *later = run + OVERLAP_AHEAD;
-            ptrdiff_t row = row_bytes * (later->row + later->more_rows),
-                      column = pixel_bytes * (ptrdiff_t)later->column;
-            __builtin_prefetch(a + (row + column));
-            __builtin_prefetch(b + (row - column));
-            __builtin_prefetch(c - (row - column));
-            __builtin_prefetch(d - (row + column));
-            row = row_bytes * run->row, column = pixel_bytes * (ptrdiff_t)run->column;
-            for (unsigned rows = run->more_rows + 1u; rows > 0; rows--, row += row_bytes) {
-                const float *end = weight + run->count;
-                ptrdiff_t i = row + column, k = row - column;
-                do {
-                    add_pixel(a + i, b + k, c - k, d - i, *weight, how, sums);
-                    i += pixel_bytes;
-                    k -= pixel_bytes;
-                } while (++weight < end);
-            }
-        }
-        last = run->last;
-        run++;
-    } while (!last && weight < limit);
-    *cursor = (overlap_cursor){run, weight};
-    return last;
-}
-
-/* The rest of a texel that has many pixels. */
-static __attribute__((noinline)) view_sums sum_more(const struct resampling *work, const view_group *group, reading how,
-                                                    overlap_cursor *at, view_sums sums)
-{
-    typedef double wide __attribute__((vector_size(32)));
-    wide a = {0}, b = {0}, c = {0}, d = {0};
-    for (bool all = false;;) {
-        a += __builtin_convertvector(sums.a, wide);
-        b += __builtin_convertvector(sums.b, wide);
-        c += __builtin_convertvector(sums.c, wide);
-        d += __builtin_convertvector(sums.d, wide);
-        if (all)
-            break;
-        sums = (view_sums){{0}, {0}, {0}, {0}};
-        all = sum_runs(work, group, how, at, &sums);
-    }
-    return (view_sums){__builtin_convertvector(a, rgbx), __builtin_convertvector(b, rgbx),
-                       __builtin_convertvector(c, rgbx), __builtin_convertvector(d, rgbx)};
-}
-
-/* Where a view's texels go: a place in the cube, and the step to the next column. */
+/* Where a view has texels of a tile's row in the cube: those from the tile's first column on, but not the last where
+ * that is another view's. */
 typedef struct texel_place {
-    float *rgb;
-    ptrdiff_t step;
+    float *rgb; /* of the leftmost */
+    uint32_t count;
+    bool onwards; /* the leftmost is the tile's first */
 } texel_place;
 
-static texel_place find_texel(const struct resampling *work, const quarter_view *view, int64_t row, int64_t column)
+static texel_place find_texels(const struct resampling *work, const quarter_view *view, const overlap_tile *tile,
+                               uint32_t row)
 {
-    int64_t texel = view->texel + row * view->texel_row_step + column * view->texel_column_step;
-    return (texel_place){work->cube + texel * 3, view->texel_column_step * 3};
+    texel_place place = {.onwards = view->texel_column_step > 0};
+    uint32_t end = tile->end_column - !quarter_view_has_column(work->plan, view, tile->end_column - 1);
+    if (quarter_view_has_row(work->plan, view, row))
+        place.count = end - tile->first_column;
+    int64_t leftmost = place.onwards ? tile->first_column : (int64_t)end - 1;
+    place.rgb = work->cube + 3 * (view->texel + row * view->texel_row_step + leftmost * view->texel_column_step);
+    return place;
 }
 
-static inline void store(texel_place *place, rgbx sum)
+/* Sends for the places of texels. */
+static inline void fetch_texels(const texel_place *place)
 {
-    memcpy(place->rgb, &sum, 2 * sizeof(float));
-    place->rgb[2] = sum[2];
-    place->rgb += place->step;
+    for (uint32_t i = 0; i < 3 * place->count; i += CONTEXT_ALIGNMENT / sizeof(float))
+        __builtin_prefetch(place->rgb + i, 1);
 }
 
-/* A tile of a list in four views. Of a face with an odd number of rows or columns the middle ones are in two views each
- * and written twice: by the same thread, always in the same order. */
-static inline __attribute__((always_inline)) void resample_views(const struct resampling *work, const view_group *group,
-                                                                 reading how, const overlap_tile *tile)
+static void write_row(const struct resampling *work, const view_group *group, const overlap_tile *tile, uint32_t row,
+                      const struct resampling_space *space)
 {
-    overlap_cursor at = {group->list->runs + tile->run, group->list->weights + tile->weight};
-    for (uint32_t row = tile->first_row; row < tile->end_row; row++) {
-        texel_place a = find_texel(work, &group->views[0], row, tile->first_column);
-        texel_place b = find_texel(work, &group->views[1], row, tile->first_column);
-        texel_place c = find_texel(work, &group->views[2], row, tile->first_column);
-        texel_place d = find_texel(work, &group->views[3], row, tile->first_column);
-        for (uint32_t column = tile->first_column; column < tile->end_column; column++) {
-            view_sums sums = {{0}, {0}, {0}, {0}};
-            if (!sum_runs(work, group, how, &at, &sums))
-                sums = sum_more(work, group, how, &at, sums);
-            store(&a, sums.a);
-            store(&b, sums.b);
-            store(&c, sums.c);
-            store(&d, sums.d);
+    for (int v = 0; v < GROUP_VIEWS; v++) {
+        const texel_place place = find_texels(work, &group->views[v], tile, row);
+        if (row + 1 < tile->end_row) {
+            const texel_place next = find_texels(work, &group->views[v], tile, row + 1);
+            fetch_texels(&next);
         }
+        if (place.count == 0)
+            continue;
+        write_texels(space->texels[place.onwards ? 0 : place.count - 1] + 4 * v, place.onwards ? NUMBERS : -NUMBERS,
+                     place.count, place.rgb);
     }
 }
 
-static bool has_plain_rows(const view_group *group, const overlap_tile *tile)
+bool KERNEL(resample)(const struct resampling *work, const view_group *group, const overlap_tile *tile,
+                      struct resampling_space *space)
 {
-    for (unsigned row = tile->least_map_row; row <= tile->greatest_map_row; row++)
-        if (group->readings[row] != ROW_AS_IT_IS)
-            return false;
-    return true;
-}
-
-void KERNEL(resample)(const struct resampling *work, const view_group *group, const overlap_tile *tile)
-{
-    const reading plain = {.pixel_bytes = 3 * sizeof(float)};
-    if (work->pixels.half)
-        resample_views(work, group, (reading){.half = true, .clamp = true, .careful = true}, tile);
-    else if (work->pixels.pixel_bytes == plain.pixel_bytes && has_plain_rows(group, tile))
-        resample_views(work, group, plain, tile);
-    else
-        resample_views(work, group, (reading){.clamp = true, .careful = true}, tile);
+    const overlap_window *window = group->list->windows + tile->window, *end = window + tile->window_count;
+    bool faults = false;
+    for (; window < end; window++) {
+        overlap_cursor at = overlap_cursor_at(group->list, window);
+        faults |= copy_window(work, group, window, space);
+        for (uint32_t row = tile->first_row; row < tile->end_row; row++) {
+            sum_texels(space, window->pitch, tile->deep, &at);
+            if (window + 1 < end)
+                continue;
+            if (tile->deep)
+                narrow(space, tile->end_column - tile->first_column);
+            write_row(work, group, tile, row, space);
+        }
+    }
+    return faults;
 }

@@ -7,6 +7,8 @@
 #include "env/environment.h"
 #include "env/resampler_plan.h"
 
+#include <string.h>
+
 /* Bands of rows are summed at the same time, some at once, so that the sums do not take memory for a whole large map.
  */
 enum { BANDS_AT_ONCE = 16, PIXELS_AT_ONCE = 1 << 21 };
@@ -31,55 +33,72 @@ typedef struct band_sums {
     pixel_sum *sums;
 } band_sums;
 
-/* Adds a row of a run to the pixels under it. */
-static void add_row(const band_sums *band, const quarter_view *view, const overlap_run *run, int64_t row,
-                    const float *weights, const float *rgb, double solid_angle)
+/* A window of a view's, and a texel on its way to the pixels there. */
+typedef struct texel_light {
+    const quarter_view *view;
+    const overlap_window *window;
+    float rgb[3];
+    double solid_angle;
+} texel_light;
+
+/* Adds a row of a part to the pixels under it. column: of the list. */
+static void add_row(const band_sums *band, const texel_light *light, const overlap_cursor *at, int64_t row,
+                    int64_t column)
 {
     const resampler *plan = band->work->plan;
-    int64_t column = quarter_view_column(plan, view, run->quarter, run->column);
     pixel_sum *sums = band->sums + (size_t)(row - band->first_row) * plan->width;
-    for (unsigned i = 0; i < run->count; i++, column += view->column_sign) {
+    column = quarter_view_column(plan, light->view, light->window->quarter, column);
+    for (unsigned i = 0; i < at->batch->columns; i++, column += light->view->column_sign) {
         pixel_sum *sum = &sums[column >> plan->part_shift];
-        double weight = (double)weights[i] * solid_angle;
+        double weight = (double)at->weight[i] * light->solid_angle;
         for (int c = 0; c < 3; c++)
-            sum->rgb[c] += weight * (double)rgb[c];
+            sum->rgb[c] += weight * (double)light->rgb[c];
         sum->weight += weight;
     }
 }
 
-/* Takes what a texel has in the band. Returns where the texel's overlaps end. */
-static overlap_cursor add_texel(const band_sums *band, const quarter_view *view, overlap_cursor at, const float *rgb,
-                                double solid_angle)
+/* Adds what a part has in the band. */
+static void add_part(const band_sums *band, const texel_light *light, overlap_cursor *at)
 {
-    for (bool last = false; !last; at.run++) {
-        last = at.run->last;
-        for (int64_t i = 0; i <= at.run->more_rows; i++, at.weight += at.run->count) {
-            int64_t row = view->row_offset + view->row_sign * (at.run->row + i);
-            if (row >= band->first_row && row < band->end_row)
-                add_row(band, view, at.run, row, at.weight, rgb, solid_angle);
-        }
+    const overlap_window *window = light->window;
+    const int64_t first_row = window->row + at->part->pixel / window->pitch;
+    const int64_t column = window->column + at->part->pixel % window->pitch;
+    for (int64_t i = 0; i < at->batch->rows; i++, at->weight += at->batch->columns) {
+        int64_t row = light->view->row_offset + light->view->row_sign * (first_row + i);
+        if (row >= band->first_row && row < band->end_row)
+            add_row(band, light, at, row, column);
     }
-    return at;
 }
 
-/* Of a face with an odd number of rows or columns the middle ones are in two views: one of them does. */
-static bool is_in_other_view(uint32_t size, const quarter_view *view, uint32_t row, uint32_t column)
+static void find_light(const helio_environment *environment, const resampler *plan, uint32_t row, uint32_t column,
+                       texel_light *light)
 {
-    return (view->texel_row_step < 0 && 2 * row + 1 == size) || (view->texel_column_step < 0 && 2 * column + 1 == size);
+    const quarter_view *view = light->view;
+    int64_t texel = view->texel + row * view->texel_row_step + column * view->texel_column_step;
+    memcpy(light->rgb, environment->cube + texel * 3, sizeof light->rgb);
+    light->solid_angle = quarter_view_has_row(plan, view, row) && quarter_view_has_column(plan, view, column)
+                             ? (double)environment->solid_angle[(size_t)row * environment->size + column]
+                             : 0.0;
 }
 
-static void add_tile(const band_sums *band, const view_group *group, const quarter_view *view, const overlap_tile *tile)
+/* Takes what the texels of a tile have in the band in one of its windows. */
+static void add_window(const band_sums *band, const overlap_list *list, const overlap_tile *tile, texel_light *light)
 {
-    const helio_environment *environment = band->work->environment;
-    overlap_cursor at = {group->list->runs + tile->run, group->list->weights + tile->weight};
-    for (uint32_t row = tile->first_row; row < tile->end_row; row++)
-        for (uint32_t column = tile->first_column; column < tile->end_column; column++) {
-            int64_t texel = view->texel + row * view->texel_row_step + column * view->texel_column_step;
-            double solid_angle = is_in_other_view(environment->size, view, row, column)
-                                     ? 0.0
-                                     : (double)environment->solid_angle[(size_t)row * environment->size + column];
-            at = add_texel(band, view, at, environment->cube + texel * 3, solid_angle);
+    overlap_cursor at = overlap_cursor_at(list, light->window);
+    for (uint32_t row = tile->first_row; row < tile->end_row; at.batch++) {
+        for (uint32_t i = 0; i < at.batch->count; i++, at.part++) {
+            find_light(band->work->environment, band->work->plan, row, tile->first_column + at.part->texel, light);
+            add_part(band, light, &at);
         }
+        row += at.batch->last;
+    }
+}
+
+static void add_tile(const band_sums *band, const overlap_list *list, const quarter_view *view,
+                     const overlap_tile *tile)
+{
+    for (uint32_t i = 0; i < tile->window_count; i++)
+        add_window(band, list, tile, &(texel_light){.view = view, .window = &list->windows[tile->window + i]});
 }
 
 static bool sees_band(const quarter_view *view, const overlap_tile *tile, const band_sums *band)
@@ -117,7 +136,7 @@ static void unfold_band(void *data, size_t index)
         for (int v = 0; v < GROUP_VIEWS; v++)
             for (size_t t = 0; t < group->list->tile_count; t++)
                 if (sees_band(&group->views[v], &group->list->tiles[t], &band))
-                    add_tile(&band, group, &group->views[v], &group->list->tiles[t]);
+                    add_tile(&band, group->list, &group->views[v], &group->list->tiles[t]);
     }
     write_averages(&band);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * A new frame: pixels are looked at for faults, then summed into the cube. */
+ * A new frame: pixels are summed into the cube, and those that are no light counted, if there are any. */
 #include "core/context.h"
 #include "core/error.h"
 #include "env/environment.h"
@@ -28,14 +28,6 @@ static void count_faults(const hygiene *work, size_t row, uint32_t first, uint32
     bad->negative += faults[PIXEL_NEGATIVE];
 }
 
-/* Whether the last pixel of a row is the last one in memory, too, and has no alpha: reading a number more would leave
- * the map. */
-static bool is_last_in_memory(const hygiene *work, size_t row)
-{
-    uint32_t numbers = work->pixels.pixel_bytes / (work->pixels.half ? sizeof(uint16_t) : sizeof(float));
-    return numbers == 3 && row == (work->pixels.row_bytes > 0 ? work->environment->map.height - 1 : 0);
-}
-
 static void check_row(void *data, size_t row)
 {
     enum { PIECE = 256 }; /* pixels that are looked at one by one if there is a fault among them */
@@ -50,9 +42,19 @@ static void check_row(void *data, size_t row)
             count_faults(work, row, first, first + count, &bad);
     }
     map->row_faults[row] = bad;
-    map->row_readings[row] = bad.nan + bad.infinite > 0 || is_last_in_memory(work, row) ? ROW_BY_PIXEL
-                             : bad.negative > 0                                         ? ROW_CLAMPED
-                                                                                        : ROW_AS_IT_IS;
+}
+
+static helio_bad_pixels count_all_faults(hygiene *work)
+{
+    const environment_map *map = &work->environment->map;
+    context_parallel_for(work->environment->context, map->height, check_row, work);
+    helio_bad_pixels bad = {0};
+    for (uint32_t row = 0; row < map->height; row++) {
+        bad.nan += map->row_faults[row].nan;
+        bad.infinite += map->row_faults[row].infinite;
+        bad.negative += map->row_faults[row].negative;
+    }
+    return bad;
 }
 
 void environment_finish_frame(helio_environment *environment, helio_bad_pixels bad, helio_environment_info *info)
@@ -97,14 +99,10 @@ helio_status helio_environment_update_pixels(helio_environment *environment, con
                                         "helio_environment_reshape() before it is updated from one");
     hygiene work = {.environment = environment, .kernels = kernels_of(context_isa(environment->context))};
     HELIO_TRY(resolve_pixels(map, given, &work.pixels));
-    context_parallel_for(environment->context, map->height, check_row, &work);
-    resampler_run(environment->context, map->resampler, &work.pixels, map->row_readings, environment->cube);
+    bool faults = resampler_run(environment->context, map->resampler, &work.pixels, environment->cube);
     helio_bad_pixels bad = {0};
-    for (uint32_t row = 0; row < map->height; row++) {
-        bad.nan += map->row_faults[row].nan;
-        bad.infinite += map->row_faults[row].infinite;
-        bad.negative += map->row_faults[row].negative;
-    }
+    if (faults || !resampler_sees_all(map->resampler))
+        bad = count_all_faults(&work);
     environment_finish_frame(environment, bad, info);
     return HELIO_OK;
 }

@@ -20,6 +20,7 @@ struct background;
 struct exposure_columns;
 struct overlap_tile;
 struct resampling;
+struct resampling_space;
 struct view_group;
 struct sky_light;
 struct sky_row;
@@ -64,8 +65,10 @@ typedef struct kernel_set {
      * the side faces. The same bits with every instruction set. */
     void (*fill_sky)(const struct sky_light *light, const struct sky_row *row, float *const *rgb);
 
-    /* The texels of a tile in four views. The same bits with every instruction set. */
-    void (*resample)(const struct resampling *work, const struct view_group *group, const struct overlap_tile *tile);
+    /* The texels of a tile in four views. Returns whether some of their pixels were no light. The same bits with every
+     * instruction set. */
+    bool (*resample)(const struct resampling *work, const struct view_group *group, const struct overlap_tile *tile,
+                     struct resampling_space *space);
 
     /* Is there perhaps a pixel among these numbers that is not light? Surely not if this is false. */
     bool (*may_have_faults)(const void *numbers, uint32_t count, bool half);
@@ -95,7 +98,8 @@ block_sum KERNEL(sum_block)(const sample_block *block);
 uint32_t KERNEL(fill_background)(const struct background *b, uint32_t count, const float *x, const float *y,
                                  float (*rgba)[4], uint32_t *left);
 void KERNEL(fill_sky)(const struct sky_light *light, const struct sky_row *row, float *const *rgb);
-void KERNEL(resample)(const struct resampling *work, const struct view_group *group, const struct overlap_tile *tile);
+bool KERNEL(resample)(const struct resampling *work, const struct view_group *group, const struct overlap_tile *tile,
+                      struct resampling_space *space);
 bool KERNEL(may_have_faults)(const void *numbers, uint32_t count, bool half);
 void KERNEL(add_light)(const float *rgb, const float *solid_angles, float v, uint32_t count,
                        struct exposure_columns *sums);
