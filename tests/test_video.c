@@ -347,6 +347,46 @@ static void code_values_become_the_light_that_the_standards_say(void **state)
 }
 
 /* The tags say PQ, the caller knows better. */
+/* Every code of luma from black to white and beyond, without colour. */
+static unsigned greys(const video_clip *clip, int frame, int component, int x, int y)
+{
+    (void)frame;
+    return component > 0 ? 512 : 4 + (unsigned)(y * clip->width + x) % 1016;
+}
+
+/* Black bars would otherwise be told as colours that Rec. 709 has not. */
+static void what_is_grey_in_a_wider_gamut_is_inside_of_rec709(void **state)
+{
+    (void)state;
+    char directory[TEST_PATH_SIZE], path[TEST_PATH_SIZE];
+    make_directory(directory);
+    join(path, directory, "clip.mkv");
+    helio_context *context = make_context(1, NULL);
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        video_clip made = clip_of_case(&CASES[i]);
+        if (made.primaries == AVCOL_PRI_BT709)
+            continue;
+        made.format = AV_PIX_FMT_YUV444P10;
+        made.range = AVCOL_RANGE_MPEG;
+        made.matrix = made.matrix == AVCOL_SPC_RGB ? AVCOL_SPC_BT2020_NCL : made.matrix;
+        made.width = 64;
+        made.height = 16;
+        made.code = greys;
+        write_clip(path, &made);
+        helio_video_reader *reader;
+        helio_video_frame frame;
+        assert_ok(helio_video_open(context, path, NULL, &reader));
+        assert_ok(helio_video_next(reader, &frame));
+        for (int k = 0; k < made.width * made.height * 3; k++)
+            if (!(frame.rgb[k] >= 0))
+                fail_msg("%s: channel %d of grey %u is %g", CASES[i].name, k % 3, greys(&made, 0, 0, k / 3, 0),
+                         (double)frame.rgb[k]);
+        helio_video_close(reader);
+    }
+    helio_context_destroy(context);
+    remove_directory(directory);
+}
+
 static void callers_overrule_the_tags(void **state)
 {
     (void)state;
@@ -676,6 +716,7 @@ int main(void)
         cmocka_unit_test(encoding_tables_keep_to_the_curves),
 #if HELIO_WITH_FFMPEG
         cmocka_unit_test(code_values_become_the_light_that_the_standards_say),
+        cmocka_unit_test(what_is_grey_in_a_wider_gamut_is_inside_of_rec709),
         cmocka_unit_test(callers_overrule_the_tags),
         cmocka_unit_test(ictcp_is_undone),
         cmocka_unit_test(chroma_is_found_where_it_lies),

@@ -5,6 +5,7 @@
 #include "image/pixel_fault.h"
 #include "image/video_samples.h"
 
+#include <math.h>
 #include <string.h>
 
 void video_converter_clear(video_converter *converter)
@@ -166,6 +167,17 @@ static void find_signals(const video_converter *converter, const video_colour *c
     }
 }
 
+/* Linear Rec. 709 of light in other primaries. Channels that are below 0 by no more than roundings are 0: grey is in
+ * every gamut. */
+static void find_rec709(const video_colour *colour, const float light[3], float rgb[3])
+{
+    const float rounding = 1e-6f * (fabsf(light[0]) + fabsf(light[1]) + fabsf(light[2])) + 1e-9f;
+    for (int c = 0; c < 3; c++) {
+        const float *m = colour->rec709[c], channel = m[0] * light[0] + m[1] * light[1] + m[2] * light[2];
+        rgb[c] = channel < 0 && channel > -rounding ? 0 : channel;
+    }
+}
+
 /* Linear Rec. 709 of the signals. step: from one pixel's place in rgb to the next's */
 static void find_light(const video_converter *converter, const video_colour *colour, float *rgb, ptrdiff_t step)
 {
@@ -173,16 +185,12 @@ static void find_light(const video_converter *converter, const video_colour *col
     const float *red = converter->signal[0], *green = converter->signal[1], *blue = converter->signal[2];
     video_colour own = *colour;
     for (size_t x = 0; x < converter->width; x++, rgb += step) {
-        float r = transfer_look_up(table, red[x]);
-        float g = transfer_look_up(table, green[x]);
-        float b = transfer_look_up(table, blue[x]);
-        for (int c = 0; c < 3; c++)
-            rgb[c] = own.rec709[c][0] * r + own.rec709[c][1] * g + own.rec709[c][2] * b;
-        if (own.is_rec709) {
-            rgb[0] = r;
-            rgb[1] = g;
-            rgb[2] = b;
-        }
+        const float light[3] = {transfer_look_up(table, red[x]), transfer_look_up(table, green[x]),
+                                transfer_look_up(table, blue[x])};
+        if (own.is_rec709)
+            memcpy(rgb, light, sizeof light);
+        else
+            find_rec709(&own, light, rgb);
     }
 }
 
