@@ -51,7 +51,8 @@ static const char *kind_of(const inspect_subject *subject)
     case HELIO_SOURCE_SKY:
     case HELIO_SOURCE_SKY_DAY: return "sky";
     case HELIO_SOURCE_FILE:
-    case HELIO_SOURCE_SEQUENCE: break;
+    case HELIO_SOURCE_SEQUENCE:
+    case HELIO_SOURCE_CALLBACK: break;
     }
     return kind_of_file(subject->frame->name);
 }

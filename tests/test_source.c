@@ -132,6 +132,7 @@ static void expect_end(helio_source *source)
     for (int i = 0; i < 2; i++) {
         helio_source_frame frame = next_frame(source);
         assert_null(frame.rgb);
+        assert_null(frame.pixels.data);
         assert_null(frame.sky);
     }
 }
@@ -140,6 +141,7 @@ static void expect_end(helio_source *source)
 static void assert_pixels(const helio_source_frame *frame, float value)
 {
     assert_non_null(frame->rgb);
+    assert_ptr_equal(frame->pixels.data, frame->rgb);
     for (size_t i = 0; i < 3 * (size_t)frame->width * frame->height; i++)
         assert_true(frame->rgb[i] == value);
 }
@@ -1047,6 +1049,131 @@ static void test_constants_are_maps_of_one_pixel(void **state)
                         HELIO_ERR_ARGUMENT, "it has only 1");
 }
 
+/* Frames in memory: every second one is a lat-long map in halves with alpha and padded rows, the others are strips of
+ * floats. */
+typedef struct memory_frames {
+    uint16_t halves[HEIGHT][WIDTH + 1][4];
+    float floats[6][3];
+    uint64_t calls, count, failing; /* frame that fails */
+} memory_frames;
+
+static helio_status give_map(void *user, uint64_t index, helio_source_map *map)
+{
+    memory_frames *frames = user;
+    frames->calls++;
+    assert_null(map->pixels.data);
+    if (index == frames->failing)
+        return HELIO_ERR_IO;
+    if (index == frames->count)
+        return HELIO_OK;
+    if (index % 2) {
+        for (int i = 0; i < 18; i++)
+            frames->floats[i / 3][i % 3] = (float)index;
+        *map = (helio_source_map){.pixels = {.data = frames->floats}, .width = 6, .height = 1};
+        return HELIO_OK;
+    }
+    for (int i = 0; i < HEIGHT * WIDTH * 4; i++) /* 1.25, and an alpha that is not a number */
+        frames->halves[i / 4 / WIDTH][i / 4 % WIDTH][i % 4] = i % 4 < 3 ? 0x3d00 : 0x7e00;
+    *map = (helio_source_map){
+        .pixels = {frames->halves, HELIO_PIXELS_RGBA_HALF, sizeof frames->halves[0]}, .width = WIDTH, .height = HEIGHT};
+    return HELIO_OK;
+}
+
+static void test_callbacks_give_maps_where_they_lie(void **state)
+{
+    (void)state;
+    memory_frames frames = {.count = 8, .failing = UINT64_MAX};
+    helio_source *source;
+    helio_environment *environment;
+    assert_ok(
+        helio_source_open_callback(context, "engine", give_map, &frames, &(helio_source_desc){.fps = 50}, &source));
+    helio_source_info info = helio_source_get_info(source);
+    assert_int_equal(info.kind, HELIO_SOURCE_CALLBACK);
+    assert_true(info.is_dynamic && info.frame_count == 0 && info.fps == 50);
+    assert_string_equal(info.label, "engine");
+    assert_int_equal(frames.calls, 0);
+    assert_ok(helio_environment_create(context, &(helio_environment_desc){.cube_size = 4}, &environment));
+    for (uint64_t i = 0; i < frames.count; i++) {
+        size_t before = memory.taken;
+        helio_source_frame frame = next_frame(source);
+        assert_int_equal(memory.taken, before);
+        assert_int_equal(frames.calls, i + 1); /* nothing is read ahead */
+        assert_true(frame.index == i && frame.seconds == (double)i / 50);
+        assert_string_equal(frame.name, "engine");
+        assert_int_equal(frame.layout, i % 2 ? HELIO_LAYOUT_STRIP : HELIO_LAYOUT_LATLONG);
+        assert_ptr_equal(frame.pixels.data, i % 2 ? (void *)frames.floats : (void *)frames.halves);
+        assert_ptr_equal(frame.rgb, i % 2 ? frames.floats : NULL);
+        helio_environment_info seen;
+        assert_ok(helio_source_apply(source, &frame, environment, &seen));
+        assert_true(seen.bad.nan == 0 && helio_environment_cube(environment)[0] == (i % 2 ? (float)i : 1.25f));
+    }
+    expect_end(source);
+    assert_int_equal(frames.calls, frames.count + 1);
+    helio_source_close(source);
+    helio_environment_destroy(environment);
+}
+
+static void test_callbacks_of_one_shape_take_no_memory(void **state)
+{
+    (void)state;
+    memory_frames frames = {.count = UINT64_MAX, .failing = UINT64_MAX};
+    helio_source *source;
+    helio_environment *environment;
+    const helio_environment_desc desc = {.cube_size = 4, .width = WIDTH, .height = HEIGHT};
+    assert_ok(helio_environment_create(context, &desc, &environment));
+    for (uint32_t i = 0; i < 6; i += 2) {
+        const helio_source_desc range = {.has_frames = true, .first = i, .last = i};
+        assert_ok(helio_source_open_callback(context, NULL, give_map, &frames, &range, &source));
+        size_t before = memory.taken;
+        helio_source_frame frame = next_frame(source);
+        assert_true(frame.index == i && frame.seconds == 0);
+        assert_ok(helio_source_apply(source, &frame, environment, NULL));
+        assert_int_equal(memory.taken, before);
+        expect_end(source);
+        helio_source_close(source);
+    }
+    assert_int_equal(frames.calls, 3);
+    helio_environment_destroy(environment);
+}
+
+static helio_status give_square(void *user, uint64_t index, helio_source_map *map)
+{
+    static const float square[4][3];
+    (void)index;
+    *map = (helio_source_map){.pixels = {.data = square}, .width = 2, .height = 2, .layout = *(helio_layout *)user};
+    return HELIO_OK;
+}
+
+static void test_callbacks_may_fail(void **state)
+{
+    (void)state;
+    memory_frames frames = {.count = 8, .failing = 1};
+    helio_source *source;
+    helio_environment *environment;
+    assert_ok(helio_source_open_callback(context, "camera", give_map, &frames, NULL, &source));
+    next_frame(source);
+    expect_next_failure(source, HELIO_ERR_IO, "frame 1 of camera cannot be had");
+    expect_end(source);
+    helio_source_close(source);
+
+    helio_layout layout = HELIO_LAYOUT_AUTO;
+    assert_ok(helio_source_open_callback(context, NULL, give_square, &layout, NULL, &source));
+    expect_next_failure(source, HELIO_ERR_ARGUMENT, "frame 0 of callback: 2 x 2 pixels do not tell the layout");
+    helio_source_close(source);
+    layout = HELIO_LAYOUT_OCTAHEDRAL;
+    assert_ok(helio_source_open_callback(context, NULL, give_square, &layout, NULL, &source));
+    helio_source_frame frame = next_frame(source);
+    assert_ok(helio_environment_create(context, &(helio_environment_desc){.cube_size = 4}, &environment));
+    assert_ok(helio_source_apply(source, &frame, environment, NULL));
+    assert_ok(helio_source_check_output(source, in_directory("picture.exr")));
+    helio_source_close(source);
+    helio_environment_destroy(environment);
+
+    source = (helio_source *)&memory;
+    assert_int_equal(helio_source_open_callback(context, NULL, NULL, NULL, NULL, &source), HELIO_ERR_ARGUMENT);
+    assert_null(source);
+}
+
 static const char SKY[] = "sky:lat=44.8,lon=-0.6,date=2026-06-21,time=10:30,zone=2";
 
 static void test_a_sky_is_one_frame(void **state)
@@ -1442,6 +1569,9 @@ int main(void)
         TEST(test_frames_of_another_size_or_layout_reshape_the_environment),
         TEST(test_bad_and_black_frames_are_frames),
         TEST(test_constants_are_maps_of_one_pixel),
+        TEST(test_callbacks_give_maps_where_they_lie),
+        TEST(test_callbacks_of_one_shape_take_no_memory),
+        TEST(test_callbacks_may_fail),
         TEST(test_a_sky_is_one_frame),
         TEST(test_a_day_goes_from_sunrise_to_sunset),
         TEST(test_skies_come_for_cubes_of_any_size_and_beside_maps),

@@ -36,6 +36,7 @@ typedef enum helio_source_kind {
     HELIO_SOURCE_CONSTANT,
     HELIO_SOURCE_SKY,     /* one moment */
     HELIO_SOURCE_SKY_DAY, /* from sunrise to sunset */
+    HELIO_SOURCE_CALLBACK /* maps in memory, see helio_source_open_callback() */
 } helio_source_kind;
 
 typedef struct helio_source_desc {
@@ -62,21 +63,22 @@ typedef struct helio_source_info {
 } helio_source_info;
 
 typedef struct helio_source_frame {
-    uint64_t index;   /* number in the file's name, or counted from 0 */
-    double seconds;   /* since the first frame */
-    double hours;     /* of a sky: local time, 0..24; NaN where the sun's place was given in place of a time */
-    const char *name; /* the file, or the source's label, for messages; of a held frame: the file that is missing */
-    const float *rgb; /* [height][width][3], linear Rec. 709; NULL for a sky */
+    uint64_t index;      /* number in the file's name, or counted from 0 */
+    double seconds;      /* since the first frame */
+    double hours;        /* of a sky: local time, 0..24; NaN where the sun's place was given in place of a time */
+    const char *name;    /* the file, or the source's label, for messages; of a held frame: the file that is missing */
+    const float *rgb;    /* [height][width][3], linear Rec. 709; NULL for a sky, and for pixels of another kind */
+    helio_pixels pixels; /* the same, or what the callback gave; data is NULL for a sky */
     uint32_t width, height;
     helio_layout layout;       /* never AUTO */
-    helio_bad_pixels bad;      /* as stored, before colour conversion */
+    helio_bad_pixels bad;      /* as stored, before colour conversion; 0 where a callback gave the pixels */
     const helio_sky_desc *sky; /* NULL but for a sky */
     bool is_held;              /* the frame before, once more */
     double read_ms;            /* reading and decoding, on the other thread */
 } helio_source_frame;
 
-/* SRC as DESIGN and `heliostat render --help` tell: a file; six faces as a directory or a pattern with %s; a printf
- * pattern (%04d) or a glob; a video; sky:KEY=VALUE,... or sky:day[,KEY=VALUE...]; lavfi:GRAPH; v4l2:DEVICE;
+/* SRC as docs/sources.md and `heliostat render --help` tell: a file; six faces as a directory or a pattern with %s; a
+ * printf pattern (%04d) or a glob; a video; sky:KEY=VALUE,... or sky:day[,KEY=VALUE...]; lavfi:GRAPH; v4l2:DEVICE;
  * constant:R,G,B. Files that exist win over patterns. Mistakes in the specification, and a file that does not exist,
  * are told here; HELIO_ERR_ARGUMENT for the former. desc may be NULL.
  *
@@ -85,6 +87,25 @@ typedef struct helio_source_frame {
  * takes; it is used again for each frame. */
 HELIO_API helio_status helio_source_open(helio_context *context, const char *specification,
                                          const helio_source_desc *desc, helio_source **source);
+
+/* A map in the caller's memory. */
+typedef struct helio_source_map {
+    helio_pixels pixels; /* linear Rec. 709; data NULL: there are no more frames */
+    uint32_t width, height;
+    helio_layout layout; /* default: that of the source's desc, else guessed */
+} helio_source_map;
+
+/* Gives frame number index. *map is {0} before. Its pixels are read where they lie, by helio_source_apply(); they must
+ * stay until the next call of helio_source_next() or helio_source_close(). Any status but HELIO_OK ends the source. */
+typedef helio_status (*helio_source_callback)(void *user, uint64_t index, helio_source_map *map);
+
+/* Frames from whoever has them in memory: a renderer, a camera's driver, a decoder. helio_source_next() calls callback
+ * in its own thread, for frames 0, 1, 2 and so on, or those that desc wants; no thread is made, and no pixel copied but
+ * into the cube. Shape, format and layout may change from frame to frame. label: what messages call the source;
+ * default "callback". Who needs no common interface calls helio_environment_update_pixels() instead. */
+HELIO_API helio_status helio_source_open_callback(helio_context *context, const char *label,
+                                                  helio_source_callback callback, void *user,
+                                                  const helio_source_desc *desc, helio_source **source);
 
 /* At any time; the thread ends after the picture that it is amid. The frame that was given last is gone. */
 HELIO_API void helio_source_close(helio_source *source);
@@ -99,7 +120,7 @@ HELIO_API helio_source_info helio_source_get_info(const helio_source *source);
  * name, and for names of frames that are missing. Looks through the folders at the first call. */
 HELIO_API helio_status helio_source_check_output(helio_source *source, const char *path);
 
-/* The next frame, valid until the next call; waits where it is not read yet. *frame has rgb and sky NULL at the end.
+/* The next frame, valid until the next call; waits where it is not read yet. At the end pixels.data and sky are NULL.
  * After a failure that a sequence or a video cannot get over (a truncated file, a device that went away) the source
  * stays at its end. */
 HELIO_API helio_status helio_source_next(helio_source *source, helio_source_frame *frame);

@@ -170,6 +170,7 @@ static helio_status open_reader(helio_source *source, source_reader **reader)
     case HELIO_SOURCE_VIDEO: return open_video(&opening, source->specification.is_surely_video, reader);
     case HELIO_SOURCE_DEVICE: return source_video_open(&opening, reader);
     case HELIO_SOURCE_CONSTANT: return source_constant_open(&opening, reader);
+    case HELIO_SOURCE_CALLBACK: return source_callback_open(&opening, reader);
     case HELIO_SOURCE_SKY:
     case HELIO_SOURCE_SKY_DAY: return source_sky_open(&opening, reader);
     case HELIO_SOURCE_FILE: break;
@@ -183,15 +184,35 @@ static bool needs_thread(helio_source_kind kind)
     return kind == HELIO_SOURCE_SEQUENCE || kind == HELIO_SOURCE_VIDEO || kind == HELIO_SOURCE_DEVICE;
 }
 
-static helio_status open_source(helio_source *source, const char *text)
+/* A source without anything but its label and its desc. */
+static helio_status create_source(helio_context *context, const char *label, const helio_source_desc *given,
+                                  helio_source **out)
 {
-    source->label = context_allocate(source->context, strlen(text) + 1, 1);
-    if (source->label == NULL)
+    helio_source_desc desc;
+    HELIO_TRY(resolve_desc(given, &desc));
+    helio_source *source = context_allocate(context, 1, sizeof *source);
+    if (source == NULL)
         return HELIO_ERR_MEMORY;
-    strcpy(source->label, text);
+    source->context = context;
+    source->desc = desc;
+    source->label = context_allocate(context, strlen(label) + 1, 1);
+    if (source->label == NULL) {
+        helio_source_close(source);
+        return HELIO_ERR_MEMORY;
+    }
+    strcpy(source->label, label);
+    *out = source;
+    return HELIO_OK;
+}
+
+static helio_status find_specification(helio_source *source)
+{
     HELIO_TRY(source_specification_parse(source->label, &source->specification));
-    if (is_path(source->specification.kind))
-        HELIO_TRY(look_at_file(&source->specification));
+    return is_path(source->specification.kind) ? look_at_file(&source->specification) : HELIO_OK;
+}
+
+static helio_status start_source(helio_source *source)
+{
     helio_source_kind kind = source->specification.kind;
     source->info = (helio_source_info){.kind = kind, .label = source->label, .fps = source->desc.fps};
     bool threaded = needs_thread(kind);
@@ -204,6 +225,18 @@ static helio_status open_source(helio_source *source, const char *text)
     return HELIO_OK;
 }
 
+/* status: of what was done with the new source so far. */
+static helio_status finish_opening(helio_source *source, helio_status status, helio_source **out)
+{
+    if (status == HELIO_OK)
+        status = start_source(source);
+    if (status == HELIO_OK)
+        *out = source;
+    else
+        helio_source_close(source);
+    return status;
+}
+
 helio_status helio_source_open(helio_context *context, const char *text, const helio_source_desc *desc,
                                helio_source **out)
 {
@@ -212,20 +245,27 @@ helio_status helio_source_open(helio_context *context, const char *text, const h
     if (context == NULL || text == NULL || out == NULL)
         return fail(HELIO_ERR_ARGUMENT,
                     "helio_source_open needs a context, a specification and a place for the result");
-    helio_source_desc resolved;
-    HELIO_TRY(resolve_desc(desc, &resolved));
-    helio_source *source = context_allocate(context, 1, sizeof *source);
-    if (source == NULL)
-        return HELIO_ERR_MEMORY;
-    source->context = context;
-    source->desc = resolved;
-    helio_status status = open_source(source, text);
-    if (status != HELIO_OK) {
-        helio_source_close(source);
-        return status;
-    }
-    *out = source;
-    return HELIO_OK;
+    helio_source *source;
+    HELIO_TRY(create_source(context, text, desc, &source));
+    return finish_opening(source, find_specification(source), out);
+}
+
+helio_status helio_source_open_callback(helio_context *context, const char *label, helio_source_callback callback,
+                                        void *user, const helio_source_desc *desc, helio_source **out)
+{
+    if (out != NULL)
+        *out = NULL;
+    if (context == NULL || callback == NULL || out == NULL)
+        return fail(HELIO_ERR_ARGUMENT,
+                    "helio_source_open_callback needs a context, a callback and a place for the result");
+    helio_source *source;
+    HELIO_TRY(create_source(context, label != NULL ? label : "callback", desc, &source));
+    source->specification = (source_specification){.kind = HELIO_SOURCE_CALLBACK,
+                                                   .text = source->label,
+                                                   .path = source->label,
+                                                   .callback = callback,
+                                                   .user = user};
+    return finish_opening(source, HELIO_OK, out);
 }
 
 void helio_source_close(helio_source *source)
@@ -285,6 +325,8 @@ helio_status helio_source_next(helio_source *source, helio_source_frame *frame)
         return HELIO_OK;
     }
     *frame = slot->frame;
+    if (frame->rgb != NULL)
+        frame->pixels.data = frame->rgb;
     return HELIO_OK;
 }
 
@@ -326,8 +368,8 @@ helio_status helio_source_apply(helio_source *source, const helio_source_frame *
         return fail(HELIO_ERR_ARGUMENT, "helio_source_apply needs a source, a frame and an environment");
     if (frame->sky != NULL)
         return apply_sky(source, frame->sky, environment, info);
-    if (frame->rgb == NULL)
+    if (frame->pixels.data == NULL)
         return fail(HELIO_ERR_ARGUMENT, "%s has come to its end: there is no frame to apply", source->label);
     HELIO_TRY(reshape(source, frame, environment));
-    return helio_environment_update(environment, frame->rgb, info);
+    return helio_environment_update_pixels(environment, &frame->pixels, info);
 }

@@ -101,7 +101,8 @@ static helio_status add_all(helio_context *context, const source_specification *
     case HELIO_SOURCE_DEVICE:
     case HELIO_SOURCE_CONSTANT:
     case HELIO_SOURCE_SKY:
-    case HELIO_SOURCE_SKY_DAY: break;
+    case HELIO_SOURCE_SKY_DAY:
+    case HELIO_SOURCE_CALLBACK: break;
     }
     return HELIO_OK;
 }

@@ -9,7 +9,8 @@
 
 bool source_slot_is_end(const source_slot *slot)
 {
-    return slot->frame.rgb == NULL && slot->frame.sky == NULL && !slot->frame.is_held;
+    const helio_source_frame *frame = &slot->frame;
+    return frame->rgb == NULL && frame->pixels.data == NULL && frame->sky == NULL && !frame->is_held;
 }
 
 void *source_reader_allocate(const source_opening *opening, size_t size, const source_reader_kind *kind)

@@ -61,6 +61,7 @@ helio_status source_constant_open(const source_opening *opening, source_reader *
 helio_status source_sequence_open(const source_opening *opening, source_reader **reader);
 helio_status source_video_open(const source_opening *opening, source_reader **reader);
 helio_status source_sky_open(const source_opening *opening, source_reader **reader);
+helio_status source_callback_open(const source_opening *opening, source_reader **reader);
 
 /* HELIO_ERR_ARGUMENT where path means six faces, but desc wants a layout that these cannot be. */
 helio_status source_check_faces(const helio_source_desc *desc, const char *path);

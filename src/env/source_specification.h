@@ -19,6 +19,8 @@ typedef struct source_specification {
     source_pattern pattern;
     float constant[3];
     sky_specification sky; /* of both kinds of sky */
+    helio_source_callback callback;
+    void *user; /* of the callback */
 } source_specification;
 
 /* HELIO_ERR_ARGUMENT for mistakes. The specification points into the text. */
