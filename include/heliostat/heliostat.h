@@ -6,6 +6,7 @@
 #ifndef HELIOSTAT_HELIOSTAT_H
 #define HELIOSTAT_HELIOSTAT_H
 
+#include <heliostat/comparison.h>
 #include <heliostat/core.h>
 #include <heliostat/environment.h>
 #include <heliostat/image.h>
