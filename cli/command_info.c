@@ -38,6 +38,11 @@ static const feature features[] = {
 #else
     {"Embree", "trace rays", false},
 #endif
+#ifdef HELIO_WITH_LCMS2
+    {"lcms2", "measure differences of colours", true},
+#else
+    {"lcms2", "measure differences of colours", false},
+#endif
 #ifdef HELIO_WITH_CAIRO
     {"cairo", "draw figures", true},
 #else

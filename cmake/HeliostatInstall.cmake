@@ -47,6 +47,11 @@ if(NOT BUILD_SHARED_LIBS)
                "libavformat libavcodec libavutil)\n")
         list(APPEND PC_REQUIRES libavformat libavcodec libavutil)
     endif()
+    if(HELIO_WITH_LCMS2)
+        string(APPEND CONFIG_PACKAGES "find_dependency(PkgConfig)\n"
+               "pkg_check_modules(LCMS2 REQUIRED QUIET IMPORTED_TARGET lcms2)\n")
+        list(APPEND PC_REQUIRES lcms2)
+    endif()
     if(HELIO_WITH_EMBREE)
         string(APPEND CONFIG_PACKAGES "find_dependency(embree ${EMBREE_MAJOR} CONFIG)\n")
         string(PREPEND PC_LIBRARIES "-lembree${EMBREE_MAJOR} ") # Embree brings no pkg-config file

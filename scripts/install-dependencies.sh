@@ -30,6 +30,7 @@ build libavcodec-dev - video
 build libavdevice-dev - cameras and test patterns
 build libjansson-dev - statistics in JSON
 build libcairo2-dev - figures
+build liblcms2-dev - differences of colours
 test libcmocka-dev - tests
 test g++ g++ testing the headers in C++
 ci clang clang a second compiler

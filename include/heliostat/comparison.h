@@ -27,7 +27,7 @@ typedef struct helio_comparison_desc {
     bool without_lab;        /* leave out Lab and CIEDE2000; default: HELIO_ERR_UNSUPPORTED in builds without lcms2 */
     bool without_flip;       /* leave out FLIP, which takes the most time and memory */
     bool flicker;            /* remember each pair, for the flicker of the next one */
-    float pixels_per_degree; /* how large FLIP's viewer sees a pixel, 1..1000; default 67: a screen of 3840 pixels,
+    float pixels_per_degree; /* how large FLIP's viewer sees a pixel, 1..200; default 67: a screen of 3840 pixels,
                                 0.7 m wide, from 0.7 m */
 } helio_comparison_desc;
 
@@ -91,8 +91,9 @@ HELIO_API helio_status helio_error_map_parse(const char *name, helio_error_map *
  * measure. NULL for a map that was left out, and before the first pair. */
 HELIO_API const float *helio_comparison_map(const helio_comparison *comparison, helio_error_map map);
 
-/* Stops at which the reference is well seen: 95 of 100 of its pixels in the mask are not brighter, in luminance, than
- * 0.8; to 1/64 of a stop. 0 where they are black. Of pictures that were made for a screen, as PNG, take 0 instead. */
+/* Stops at which the reference is well seen: 95 of 100 of its pixels in the mask that are lit get a luminance of 0.8 or
+ * less. 0 where none is. Of pictures that were made for a screen, as PNG, take 0 instead. Of the pair, reference, its
+ * channels and mask are looked at. */
 HELIO_API helio_status helio_comparison_auto_exposure(const helio_comparison *comparison,
                                                       const helio_comparison_pair *pair, float *exposure);
 

@@ -23,7 +23,7 @@ bool colour_is_rec709(const chromaticities *space)
     return true;
 }
 
-static void transform(const colour_matrix *a, const double v[3], double out[3])
+void colour_transform(const colour_matrix *a, const double v[3], double out[3])
 {
     for (int row = 0; row < 3; row++)
         out[row] = a->m[row][0] * v[0] + a->m[row][1] * v[1] + a->m[row][2] * v[2];
@@ -82,7 +82,7 @@ static bool matrix_to_xyz(const chromaticities *space, colour_matrix *matrix)
     double white[3], amounts[3];
     if (!xyz_from_xy(space->white, white) || !colour_invert(&columns, &inverse))
         return false;
-    transform(&inverse, white, amounts);
+    colour_transform(&inverse, white, amounts);
     for (int row = 0; row < 3; row++)
         for (int column = 0; column < 3; column++)
             matrix->m[row][column] = columns.m[row][column] * amounts[column];
@@ -95,8 +95,8 @@ static bool adaptation(const double from[2], const double to[2], colour_matrix *
     double from_xyz[3], to_xyz[3], from_cone[3], to_cone[3];
     if (!xyz_from_xy(from, from_xyz) || !xyz_from_xy(to, to_xyz))
         return false;
-    transform(&BRADFORD, from_xyz, from_cone);
-    transform(&BRADFORD, to_xyz, to_cone);
+    colour_transform(&BRADFORD, from_xyz, from_cone);
+    colour_transform(&BRADFORD, to_xyz, to_cone);
     colour_matrix scaled = BRADFORD, inverse;
     for (int row = 0; row < 3; row++) {
         if (!(from_cone[row] > 1e-6))
@@ -122,10 +122,16 @@ bool colour_to_rec709(const chromaticities *space, colour_matrix *matrix)
     return true;
 }
 
+colour_matrix colour_rec709_to_xyz(void)
+{
+    colour_matrix to_xyz;
+    matrix_to_xyz(&REC709, &to_xyz);
+    return to_xyz;
+}
+
 colour_matrix colour_xyz_to_rec709(void)
 {
-    colour_matrix to_xyz, from_xyz;
-    matrix_to_xyz(&REC709, &to_xyz);
+    colour_matrix to_xyz = colour_rec709_to_xyz(), from_xyz;
     colour_invert(&to_xyz, &from_xyz);
     return from_xyz;
 }
@@ -134,7 +140,7 @@ void colour_apply(const colour_matrix *matrix, float *rgb, size_t pixels)
 {
     for (size_t i = 0; i < pixels; i++) {
         double old[3] = {(double)rgb[3 * i], (double)rgb[3 * i + 1], (double)rgb[3 * i + 2]}, converted[3];
-        transform(matrix, old, converted);
+        colour_transform(matrix, old, converted);
         for (int c = 0; c < 3; c++)
             rgb[3 * i + (size_t)c] = (float)converted[c];
     }

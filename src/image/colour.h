@@ -27,8 +27,12 @@ colour_matrix colour_multiply(const colour_matrix *a, const colour_matrix *b);
 /* false if there is no inverse. */
 bool colour_invert(const colour_matrix *matrix, colour_matrix *inverse);
 
-/* CIE XYZ to Rec. 709 as it stands: the XYZ of D65 with Y = 1 becomes (1, 1, 1). */
+/* CIE XYZ to Rec. 709 as it stands, and back: the XYZ of D65 with Y = 1 is (1, 1, 1). */
 colour_matrix colour_xyz_to_rec709(void);
+colour_matrix colour_rec709_to_xyz(void);
+
+/* out = matrix x v; out is not v. */
+void colour_transform(const colour_matrix *matrix, const double v[3], double out[3]);
 
 /* rgb: [pixels][3] */
 void colour_apply(const colour_matrix *matrix, float *rgb, size_t pixels);

@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: MIT
+ * P. Andersson, J. Nilsson, T. Akenine-Moeller, M. Oskarsson, K. Astroem, M. D. Fairchild: "FLIP: A Difference
+ * Evaluator for Alternating Images", Proc. ACM Comput. Graph. Interact. Tech. 3(2), 2020. */
+#include "eval/flip_filter.h"
+
+#include "core/vector.h"
+
+#include <stddef.h>
+#include <string.h>
+
+/* ---- kernels ------------------------------------------------------------------------------ */
+
+/* Contrast sensitivities as sums of Gaussians a sqrt(pi / b) exp(-(pi x)^2 / b), x in degrees: table 1. Red-green and
+ * achromatic have one. */
+static const double ACHROMATIC_B = 0.0047, RED_GREEN_B = 0.0053;
+static const double BLUE_YELLOW_A[2] = {34.1, 13.5}, BLUE_YELLOW_B[2] = {0.04, 0.025};
+static const double FEATURE_WIDTH = 0.082; /* of edges and points, degrees */
+
+static double gaussian(double x, double deviation)
+{
+    return exp(-0.5 * (x / deviation) * (x / deviation));
+}
+
+/* Weights before they sum to 1, whose sum is returned. All colours have the radius of the widest, as they are one
+ * filter of three channels. */
+static double fill_smooth(flip_kernel *kernel, double deviation, int radius)
+{
+    double sum = 0;
+    kernel->radius = radius;
+    for (int x = -radius; x <= radius; x++)
+        sum += gaussian(x, deviation);
+    for (int x = -radius; x <= radius; x++)
+        kernel->weights[x + radius] = (float)(gaussian(x, deviation) / sum);
+    return sum;
+}
+
+/* Of values at -radius ... radius. */
+static void fill_signed(flip_kernel *kernel, const double *values, int radius)
+{
+    double positive = 0, negative = 0;
+    kernel->radius = radius;
+    for (int i = 0; i <= 2 * radius; i++)
+        *(values[i] > 0 ? &positive : &negative) += fabs(values[i]);
+    for (int i = 0; i <= 2 * radius; i++)
+        kernel->weights[i] = (float)(values[i] / (values[i] > 0 ? positive : negative));
+}
+
+/* In pixels, of a Gaussian of the contrast sensitivities. */
+static double deviation_of(double b, double pixels_per_degree)
+{
+    return sqrt(b / (2 * PI * PI)) * pixels_per_degree;
+}
+
+static void make_colours(flip_filter *filter, double pixels_per_degree)
+{
+    int radius = (int)ceil(3 * deviation_of(BLUE_YELLOW_B[0], pixels_per_degree));
+    double parts[2];
+    fill_smooth(&filter->achromatic, deviation_of(ACHROMATIC_B, pixels_per_degree), radius);
+    fill_smooth(&filter->red_green, deviation_of(RED_GREEN_B, pixels_per_degree), radius);
+    for (int i = 0; i < 2; i++) {
+        double sum = fill_smooth(&filter->blue_yellow[i], deviation_of(BLUE_YELLOW_B[i], pixels_per_degree), radius);
+        parts[i] = BLUE_YELLOW_A[i] * sqrt(PI / BLUE_YELLOW_B[i]) * sum * sum;
+    }
+    for (int i = 0; i < 2; i++)
+        filter->blue_yellow_shares[i] = (float)(parts[i] / (parts[0] + parts[1]));
+}
+
+/* First and second derivative of a Gaussian. */
+static void make_features(flip_filter *filter, double pixels_per_degree)
+{
+    double deviation = 0.5 * FEATURE_WIDTH * pixels_per_degree;
+    int radius = (int)ceil(3 * deviation);
+    double edge[2 * FLIP_RADIUS + 1], point[2 * FLIP_RADIUS + 1];
+    for (int x = -radius; x <= radius; x++) {
+        double relative = x / deviation, value = gaussian(x, deviation);
+        edge[x + radius] = -x * value;
+        point[x + radius] = (relative * relative - 1) * value;
+    }
+    fill_smooth(&filter->smooth, deviation, radius);
+    fill_signed(&filter->edge, edge, radius);
+    fill_signed(&filter->point, point, radius);
+}
+
+void flip_filter_make(flip_filter *filter, double pixels_per_degree)
+{
+    memset(filter, 0, sizeof *filter);
+    make_colours(filter, pixels_per_degree);
+    make_features(filter, pixels_per_degree);
+}
+
+/* ---- filtering ---------------------------------------------------------------------------- */
+
+/* Part of a row, FLIP_RADIUS pixels more on either side. */
+typedef struct row_window {
+    const flip_picture *picture;
+    uint32_t row;
+    int64_t first; /* column of the first pixel, which may lie outside of the picture */
+    uint32_t count;
+} row_window;
+
+static int64_t clamp(int64_t value, int64_t least, int64_t greatest)
+{
+    return value < least ? least : value > greatest ? greatest : value;
+}
+
+static void filter_down(const row_window *window, int plane, const flip_kernel *kernel, float *restrict out)
+{
+    const flip_picture *picture = window->picture;
+    int64_t left = clamp(window->first, 0, picture->width - 1);
+    int64_t right = clamp(window->first + window->count - 1, 0, picture->width - 1);
+    float *inside = out + (left - window->first);
+    size_t count = (size_t)(right - left + 1);
+    memset(out, 0, window->count * sizeof *out);
+    for (int y = -kernel->radius; y <= kernel->radius; y++) {
+        int64_t row = clamp((int64_t)window->row + y, 0, picture->height - 1);
+        const float *restrict line = picture->planes[plane] + (size_t)row * picture->width + left;
+        float weight = kernel->weights[y + kernel->radius];
+        for (size_t i = 0; i < count; i++)
+            inside[i] += weight * line[i];
+    }
+    for (float *border = out; border < inside; border++)
+        *border = *inside;
+    for (float *border = inside + count; border < out + window->count; border++)
+        *border = inside[count - 1];
+}
+
+/* rows: [count + 2 FLIP_RADIUS] */
+static void filter_across(const float *restrict rows, const flip_kernel *kernel, uint32_t count, float *restrict out)
+{
+    memset(out, 0, count * sizeof *out);
+    for (int x = -kernel->radius; x <= kernel->radius; x++) {
+        const float *restrict shifted = rows + FLIP_RADIUS + x;
+        float weight = kernel->weights[x + kernel->radius];
+        for (uint32_t i = 0; i < count; i++)
+            out[i] += weight * shifted[i];
+    }
+}
+
+static void filter(const row_window *window, int plane, const flip_kernel *down, const flip_kernel *across, float *out)
+{
+    float rows[FLIP_WINDOW];
+    filter_down(window, plane, down, rows);
+    filter_across(rows, across, window->count - 2 * FLIP_RADIUS, out);
+}
+
+static void see_colours(const flip_filter *f, const row_window *window, uint32_t count, flip_view *view)
+{
+    float wide[FLIP_CHUNK], narrow[FLIP_CHUNK];
+    filter(window, 0, &f->achromatic, &f->achromatic, view->colours[0]);
+    filter(window, 1, &f->red_green, &f->red_green, view->colours[1]);
+    filter(window, 2, &f->blue_yellow[0], &f->blue_yellow[0], wide);
+    filter(window, 2, &f->blue_yellow[1], &f->blue_yellow[1], narrow);
+    for (uint32_t i = 0; i < count; i++)
+        view->colours[2][i] = f->blue_yellow_shares[0] * wide[i] + f->blue_yellow_shares[1] * narrow[i];
+}
+
+/* Of the achromatic channel, which is 116 times the luminance but for a constant that these kernels do not see. */
+static void see_features(const flip_filter *f, const row_window *window, const flip_kernel *along, uint32_t count,
+                         float *strengths)
+{
+    float down[FLIP_CHUNK], across[FLIP_CHUNK];
+    filter(window, 0, along, &f->smooth, down);
+    filter(window, 0, &f->smooth, along, across);
+    for (uint32_t i = 0; i < count; i++)
+        strengths[i] = sqrtf(down[i] * down[i] + across[i] * across[i]) * (1 / 116.0f);
+}
+
+void flip_filter_see(const flip_filter *f, const flip_picture *picture, uint32_t row, uint32_t column, uint32_t count,
+                     flip_view *view)
+{
+    const row_window window = {picture, row, (int64_t)column - FLIP_RADIUS, count + 2 * FLIP_RADIUS};
+    see_colours(f, &window, count, view);
+    see_features(f, &window, &f->edge, count, view->edges);
+    see_features(f, &window, &f->point, count, view->points);
+}
