@@ -115,9 +115,13 @@ static size_t layer_floats(const helio_picture *picture, size_t channels)
 static helio_status copy_picture(frame_sink *sink, const helio_picture *picture)
 {
     helio_picture *copy = &sink->picture;
-    const picture_layer layers[] = {{picture->rgba, &copy->rgba, 4},         {picture->object, &copy->object, 1},
-                                    {picture->albedo, &copy->albedo, 3},     {picture->normal, &copy->normal, 3},
-                                    {picture->position, &copy->position, 3}, {picture->depth, &copy->depth, 1}};
+    const picture_layer layers[] = {{picture->rgba, &copy->rgba, 4},
+                                    {picture->object, &copy->object, 1},
+                                    {picture->albedo, &copy->albedo, 3},
+                                    {picture->normal, &copy->normal, 3},
+                                    {picture->position, &copy->position, 3},
+                                    {picture->depth, &copy->depth, 1},
+                                    {picture->standard_error, &copy->standard_error, 3}};
     size_t count = sizeof layers / sizeof layers[0], channels = 0;
     for (size_t i = 0; i < count; i++)
         channels += layers[i].from != NULL ? layers[i].channels : 0;

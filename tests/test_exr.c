@@ -693,14 +693,16 @@ static void read_channel(const char *path, const char *name, float plane[PIXELS]
     assert_true(found);
 }
 
-static void test_layers_are_written(void **state)
+enum { LAYERS = 18 };
+
+/* A picture whose every channel holds other numbers: values[layer] are those of names[layer]. */
+static void write_layers(fixture *f, const char *path, float values[LAYERS][PIXELS])
 {
-    fixture *f = *state;
-    static float values[15][PIXELS];
-    static float rgba[4 * PIXELS], albedo[3 * PIXELS], normal[3 * PIXELS], position[3 * PIXELS];
-    for (int layer = 0; layer < 15; layer++)
+    static float rgba[4 * PIXELS], albedo[3 * PIXELS], normal[3 * PIXELS], position[3 * PIXELS], error[3 * PIXELS];
+    for (int layer = 0; layer < LAYERS; layer++)
         for (int i = 0; i < PIXELS; i++)
             values[layer][i] = (float)(1000 * layer + i);
+    values[14][3] = INFINITY;
     for (int i = 0; i < PIXELS; i++) {
         for (int c = 0; c < 4; c++)
             rgba[4 * i + c] = values[c][i];
@@ -708,9 +710,9 @@ static void test_layers_are_written(void **state)
             albedo[3 * i + c] = values[4 + c][i];
             normal[3 * i + c] = values[7 + c][i];
             position[3 * i + c] = values[10 + c][i];
+            error[3 * i + c] = values[15 + c][i];
         }
     }
-    values[14][3] = INFINITY;
     const helio_picture picture = {.width = WIDTH,
                                    .height = HEIGHT,
                                    .rgba = rgba,
@@ -718,13 +720,22 @@ static void test_layers_are_written(void **state)
                                    .albedo = albedo,
                                    .normal = normal,
                                    .position = position,
-                                   .depth = values[14]};
-    static const char *const names[15] = {"R",          "G",          "B",          "A",        "albedo.R",
-                                          "albedo.G",   "albedo.B",   "normal.X",   "normal.Y", "normal.Z",
-                                          "position.X", "position.Y", "position.Z", "object.A", "depth.Z"};
-    const char *path = fixture_path(f, "layers.exr");
+                                   .depth = values[14],
+                                   .standard_error = error};
     assert_int_equal(helio_picture_write(f->context, path, &picture, NULL), HELIO_OK);
-    for (int layer = 0; layer < 15; layer++) {
+}
+
+static void test_layers_are_written(void **state)
+{
+    fixture *f = *state;
+    static float values[LAYERS][PIXELS];
+    static const char *const names[LAYERS] = {"R",          "G",          "B",          "A",        "albedo.R",
+                                              "albedo.G",   "albedo.B",   "normal.X",   "normal.Y", "normal.Z",
+                                              "position.X", "position.Y", "position.Z", "object.A", "depth.Z",
+                                              "stderr.R",   "stderr.G",   "stderr.B"};
+    const char *path = fixture_path(f, "layers.exr");
+    write_layers(f, path, values);
+    for (int layer = 0; layer < LAYERS; layer++) {
         float plane[PIXELS];
         read_channel(path, names[layer], plane);
         assert_memory_equal(plane, values[layer], sizeof plane);
@@ -736,6 +747,52 @@ static void test_layers_are_written(void **state)
     assert_int_equal(ImfHeaderCompression(ImfInputHeader(file)), IMF_ZIP_COMPRESSION);
     ImfCloseInputFile(file);
     unlink(path);
+}
+
+static void test_a_layer_is_read_by_its_name(void **state)
+{
+    fixture *f = *state;
+    static float values[LAYERS][PIXELS];
+    static const struct {
+        const char *layer;
+        int first[3];
+    } layers[] = {{NULL, {0, 1, 2}},          {"albedo", {4, 5, 6}},    {"normal", {7, 8, 9}},
+                  {"position", {10, 11, 12}}, {"object", {13, 13, 13}}, {"depth", {14, 14, 14}},
+                  {"stderr", {15, 16, 17}}};
+    const char *path = fixture_path(f, "layers.exr");
+    write_layers(f, path, values);
+    for (size_t k = 0; k < sizeof layers / sizeof *layers; k++) {
+        helio_image *image = NULL;
+        const helio_image_read_desc desc = {.layer = layers[k].layer};
+        assert_int_equal(helio_image_read(f->context, path, &desc, &image), HELIO_OK);
+        for (int i = 0; i < PIXELS; i++)
+            for (int c = 0; c < 3; c++)
+                assert_true(image->rgb[3 * i + c] == values[layers[k].first[c]][i]);
+        assert_int_equal(image->alpha != NULL, layers[k].layer == NULL);
+        helio_image_destroy(f->context, image);
+    }
+    unlink(path);
+}
+
+static void test_a_layer_that_is_missing_is_told(void **state)
+{
+    fixture *f = *state;
+    static float values[LAYERS][PIXELS];
+    char path[512], other[512];
+    helio_image *image;
+    snprintf(path, sizeof path, "%s", fixture_path(f, "layers.exr"));
+    snprintf(other, sizeof other, "%s", fixture_path(f, "layers.pfm"));
+    write_layers(f, path, values);
+    write_layers(f, other, values);
+    assert_int_equal(helio_image_read(f->context, path, &(helio_image_read_desc){.layer = "stder"}, &image),
+                     HELIO_ERR_DATA);
+    assert_non_null(strstr(helio_last_error(), "no layer 'stder'"));
+    assert_non_null(strstr(helio_last_error(), "stderr.R"));
+    assert_int_equal(helio_image_read(f->context, other, &(helio_image_read_desc){.layer = "stderr"}, &image),
+                     HELIO_ERR_DATA);
+    assert_non_null(strstr(helio_last_error(), "only OpenEXR has layers"));
+    unlink(path);
+    unlink(other);
 }
 
 /* ---- files of others ---- */
@@ -832,6 +889,8 @@ int main(void)
         TEST(test_huge_tiles_count_as_pixels),
         TEST(test_written_pictures_keep_every_bit),
         TEST(test_layers_are_written),
+        TEST(test_a_layer_is_read_by_its_name),
+        TEST(test_a_layer_that_is_missing_is_told),
         TEST(test_captured_maps_have_known_values),
         TEST(test_odd_files_of_others),
         TEST(test_damaged_files_of_others),

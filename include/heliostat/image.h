@@ -66,6 +66,11 @@ typedef struct helio_image_read_desc {
 
     bool without_alpha; /* takes no memory for alpha; default: as the file has it */
 
+    /* OpenEXR only: read this layer in place of the picture: "stderr" for stderr.R, stderr.G and stderr.B (and an
+     * alpha), else X, Y and Z, or the one channel that a layer such as "object" or "depth" has, as grey.
+     * HELIO_ERR_DATA, with a list of what is there, where it is missing. Default: the picture */
+    const char *layer;
+
     /* FACES: a file that is named like a face of the cube, sky_px.exr say, stands for all six. Others change nothing.
      */
     helio_layout layout;
@@ -109,6 +114,7 @@ typedef struct helio_picture {
     const float *normal;   /* [height][width][3], world space; 0 where nothing was hit */
     const float *position; /* [height][width][3], world space, metres; 0 where nothing was hit */
     const float *depth; /* [height][width], distance from the eye along its axis, metres; +Inf where nothing was hit */
+    const float *standard_error; /* [height][width][3], of red, green and blue, see reference.h */
 } helio_picture;
 
 typedef struct helio_picture_write_desc {
@@ -118,8 +124,8 @@ typedef struct helio_picture_write_desc {
 } helio_picture_write_desc;
 
 /* Writes by the extension of path: .exr (float, ZIP; R G B A, object.A, albedo.R/G/B, normal.X/Y/Z, position.X/Y/Z,
- * depth.Z), .pfm (R G B) or .png (8 bit sRGB). The file is made under a temporary name in the same directory and then
- * renamed, so that path holds either the old or the whole new picture. desc may be NULL. */
+ * depth.Z, stderr.R/G/B), .pfm (R G B) or .png (8 bit sRGB). The file is made under a temporary name in the same
+ * directory and then renamed, so that path holds either the old or the whole new picture. desc may be NULL. */
 HELIO_API helio_status helio_picture_write(helio_context *context, const char *path, const helio_picture *picture,
                                            const helio_picture_write_desc *desc);
 

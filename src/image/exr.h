@@ -20,8 +20,8 @@ typedef struct exr_channels {
     bool has_float;        /* at least one of them is of type float */
 } exr_channels;
 
-/* Finds the first part with R, G and B, with Y, or with a layer that has R, G and B. HELIO_ERR_DATA, with a list of the
- * channels that are there, if no part has them. */
+/* Finds the first part with R, G and B, with Y, or with a layer that has R, G and B; or the layer that the file is to
+ * be read for. HELIO_ERR_DATA, with a list of the channels that are there, if no part has them. */
 helio_status exr_channels_find(const image_file *file, exr_const_context_t library, exr_channels *channels);
 
 /* Where the pixels of a chunk go: what decoding_user_data of a decoding pipeline points to. */

@@ -35,10 +35,10 @@ static void use(exr_channels *channels, int index, const exr_attr_chlist_entry_t
     channels->has_float |= entry->pixel_type == EXR_PIXEL_FLOAT;
 }
 
-/* Takes R, G, B and perhaps A behind the prefix, which is empty or ends in a point. */
-static bool find_rgb(const exr_attr_chlist_t *list, const char *prefix, size_t prefix_length, exr_channels *channels)
+/* Takes three channels and perhaps a fourth, named by letters behind the prefix, which is empty or ends in a point. */
+static bool find_letters(const exr_attr_chlist_t *list, const char *prefix, size_t prefix_length,
+                         const char *const letters[4], exr_channels *channels)
 {
-    static const char *const letters[] = {"R", "G", "B", "A"};
     for (int i = 0; i < 3; i++)
         if (!is_whole(find(list, prefix, prefix_length, letters[i])))
             return false;
@@ -46,6 +46,12 @@ static bool find_rgb(const exr_attr_chlist_t *list, const char *prefix, size_t p
         use(channels, i, find(list, prefix, prefix_length, letters[i]));
     channels->has_layer = prefix_length > 0;
     return true;
+}
+
+static bool find_rgb(const exr_attr_chlist_t *list, const char *prefix, size_t prefix_length, exr_channels *channels)
+{
+    static const char *const letters[] = {"R", "G", "B", "A"};
+    return find_letters(list, prefix, prefix_length, letters, channels);
 }
 
 static bool find_luminance(const exr_attr_chlist_t *list, exr_channels *channels)
@@ -68,6 +74,41 @@ static bool find_layer(const exr_attr_chlist_t *list, exr_channels *channels)
             return true;
     }
     return false;
+}
+
+/* The only channel behind a prefix. */
+static bool find_single(const exr_attr_chlist_t *list, const char *prefix, size_t prefix_length, exr_channels *channels)
+{
+    const exr_attr_chlist_entry_t *found = NULL;
+    for (int i = 0; i < list->num_channels; i++)
+        if (strncmp(list->entries[i].name.str, prefix, prefix_length) == 0) {
+            if (found != NULL)
+                return false;
+            found = &list->entries[i];
+        }
+    if (!is_whole(found))
+        return false;
+    use(channels, 0, found);
+    channels->has_layer = true;
+    return true;
+}
+
+static bool find_named_layer(const exr_attr_chlist_t *list, const char *layer, exr_channels *channels)
+{
+    static const char *const letters[] = {"X", "Y", "Z", "A"};
+    char prefix[256];
+    int length = snprintf(prefix, sizeof prefix, "%s.", layer);
+    return length > 0 && (size_t)length < sizeof prefix &&
+           (find_rgb(list, prefix, (size_t)length, channels) ||
+            find_letters(list, prefix, (size_t)length, letters, channels) ||
+            find_single(list, prefix, (size_t)length, channels));
+}
+
+static bool find_wanted(const image_file *file, const exr_attr_chlist_t *list, exr_channels *channels)
+{
+    if (file->layer != NULL)
+        return find_named_layer(list, file->layer, channels);
+    return find_rgb(list, "", 0, channels) || find_luminance(list, channels) || find_layer(list, channels);
 }
 
 /* Non-deep parts only; NULL for others. */
@@ -95,6 +136,9 @@ static helio_status fail_with_list(const image_file *file, const exr_attr_chlist
     if (used >= sizeof text)
         strcpy(text + sizeof text - 4, "...");
     image_make_printable(text);
+    if (file->layer != NULL)
+        return fail(HELIO_ERR_DATA, "%s has no layer '%s' with three channels or one; it has: %s", file->path,
+                    file->layer, used ? text : "none");
     return fail(HELIO_ERR_DATA, "%s has no channels R, G and B, nor Y, nor a layer with R, G and B; it has: %s",
                 file->path, used ? text : "none");
 }
@@ -109,7 +153,7 @@ helio_status exr_channels_find(const image_file *file, exr_const_context_t libra
         if (list == NULL)
             continue;
         *channels = (exr_channels){.part = part};
-        if (find_rgb(list, "", 0, channels) || find_luminance(list, channels) || find_layer(list, channels))
+        if (find_wanted(file, list, channels))
             return HELIO_OK;
         if (first == NULL)
             first = list;

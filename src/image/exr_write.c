@@ -10,7 +10,7 @@
 
 #include <openexr.h>
 
-enum { CHANNEL_LIMIT = 15 };
+enum { CHANNEL_LIMIT = 18 };
 
 /* One channel of the file and where its floats are. */
 typedef struct exr_layer {
@@ -70,12 +70,14 @@ static void collect_layers(exr_writer *writer, const helio_picture *picture)
     static const char *const albedo[] = {"albedo.R", "albedo.G", "albedo.B"};
     static const char *const normal[] = {"normal.X", "normal.Y", "normal.Z"};
     static const char *const position[] = {"position.X", "position.Y", "position.Z"};
+    static const char *const standard_error[] = {"stderr.R", "stderr.G", "stderr.B"};
     for (size_t c = 0; c < 4; c++)
         add_layer(writer, rgba[c], picture->rgba + c, 4);
     for (size_t c = 0; c < 3; c++) {
         add_layer(writer, albedo[c], behind(picture->albedo, c), 3);
         add_layer(writer, normal[c], behind(picture->normal, c), 3);
         add_layer(writer, position[c], behind(picture->position, c), 3);
+        add_layer(writer, standard_error[c], behind(picture->standard_error, c), 3);
     }
     add_layer(writer, "object.A", picture->object, 1);
     add_layer(writer, "depth.Z", picture->depth, 1);

@@ -70,6 +70,9 @@ helio_status image_decode(const image_file *file, helio_image **image)
                     "%s is not a picture that can be read; give OpenEXR, Radiance HDR, PFM, PNG or JPEG", file->path);
     if (file->texels != NULL && !kind->encoded)
         return fail(HELIO_ERR_DATA, "%s is %s, which cannot be used here; give PNG or JPEG", file->path, kind->name);
+    if (file->layer != NULL && strcmp(kind->name, "OpenEXR") != 0)
+        return fail(HELIO_ERR_DATA, "%s has no layer '%s': it is %s, and only OpenEXR has layers", file->path,
+                    file->layer, kind->name);
     if (kind->read == NULL)
         return fail(HELIO_ERR_UNSUPPORTED, "%s is %s, which this build cannot read; build with it or convert the file",
                     file->path, kind->name);
@@ -84,7 +87,11 @@ static uint64_t default_max_pixels(uint64_t file_size)
 static helio_status read_file(helio_context *context, const char *path, const helio_image_read_desc *desc,
                               helio_image **image)
 {
-    image_file file = {.context = context, .path = path, .without_alpha = desc != NULL && desc->without_alpha};
+    image_file file = {.context = context, .path = path};
+    if (desc != NULL) {
+        file.without_alpha = desc->without_alpha;
+        file.layer = desc->layer;
+    }
     const size_t limit = FILE_SIZE_LIMIT < SIZE_MAX / 2 ? (size_t)FILE_SIZE_LIMIT : SIZE_MAX / 2;
     unsigned char *bytes;
     HELIO_TRY(file_read(context, path, limit, &bytes, &file.size));

@@ -18,6 +18,7 @@ typedef struct image_file {
     const char *way_out; /* for pictures of more pixels, as the end of a sentence; default: to raise max_pixels */
     uint32_t max_edge;   /* pixels each way; default: IMAGE_EDGE_LIMIT */
     bool without_alpha;
+    const char *layer; /* of an OpenEXR file, see helio_image_read_desc; NULL: the picture */
 
     /* NULL for linear floats. Else only PNG and JPEG are read, and image_create() puts memory here: for RGBA of 8 bits
      * each, as stored, in place of the picture's own arrays. Who gives it releases it, also after a failure. */
