@@ -47,8 +47,16 @@ static const help_entry camera_forms[] = {
      "from eye towards at, in metres; without at, towards the middle of the object"},
 };
 
+static const help_entry picture_forms[] = {
+    {"FILE", "one picture: EXR, PFM, PNG, JPEG or Radiance HDR. As REFERENCE also that of a whole sequence"},
+    {"out_%04d.exr", "the numbered pictures that there are; those of one number are compared"},
+    {"'DIR/*.exr'", "all files that the shell would find, in natural order, with as many others in theirs"},
+    {"DIR", "all pictures in it, with those of the same names but for their endings in another one"},
+};
+
 const help_section help_forms[] = {
     {"SRC", source_forms, COUNT(source_forms), COMMANDS_OF_SCENES | COMMAND_CONVERT | COMMAND_INSPECT},
+    {"PICTURE and REFERENCE", picture_forms, COUNT(picture_forms), COMMAND_COMPARE},
     {"--layout L", layout_forms, COUNT(layout_forms), COMMANDS_OF_SCENES | COMMAND_CONVERT | COMMAND_INSPECT},
     {"--material SPEC", material_forms, COUNT(material_forms), COMMANDS_OF_SCENES},
     {"--camera SPEC", camera_forms, COUNT(camera_forms), COMMANDS_OF_SCENES},
@@ -82,6 +90,10 @@ static const help_entry examples[] = {
      "where the 64 samples of a pixel are, as the paper's Figure 3"},
     {"heliostat samples --env sky:day --contact-sheet day.png", "the same pixel at six times of a day"},
     {"heliostat samples --strategy face+brdf --json -", "counts and all samples, for a script"},
+    {"heliostat compare face.exr reference.exr --out error.png",
+     "how far a picture is from its reference, in numbers and as a picture"},
+    {"heliostat compare 'face/%04d.exr' 'truth/%04d.exr' --json flicker.json",
+     "of a sequence, also how much its error flickers"},
     {"heliostat bench --stages tables,frame --json bench.json", "how fast this machine is"},
 };
 const help_section help_examples = {"Examples", examples, COUNT(examples), COMMAND_ALL};

@@ -9,7 +9,7 @@
 #include <string.h>
 
 static const char DIGITS[] = "0123456789";
-static const unsigned MOST_DIGITS = 19;
+enum { MOST_DIGITS = 19 };
 
 /* Folders may have any name. */
 static const char *last_part(const char *path)
@@ -66,6 +66,21 @@ bool numbered_path_makes(const numbered_path *path, const char *part)
         return false;
     digits = rest - after_length;
     return digits == path->digits || (digits > path->digits && number[0] != '0');
+}
+
+bool numbered_path_read(const numbered_path *path, const char *part, uint64_t *number)
+{
+    if (!numbered_path_makes(path, part))
+        return false;
+    const char *digits = part + (path->pattern + path->start - last_part(path->pattern));
+    char text[MOST_DIGITS + 1];
+    size_t length = strlen(digits) - strlen(path->pattern + path->end);
+    if (length > MOST_DIGITS)
+        return false;
+    memcpy(text, digits, length);
+    text[length] = 0;
+    *number = strtoull(text, NULL, 10);
+    return true;
 }
 
 bool numbered_path_format(const numbered_path *path, uint64_t number, char *name, size_t size)

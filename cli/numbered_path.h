@@ -23,6 +23,9 @@ bool numbered_path_parse(const char *pattern, numbered_path *path);
 /* Is this the last part of a name that some number makes? Folders are not compared. */
 bool numbered_path_makes(const numbered_path *path, const char *last_part);
 
+/* And which number? */
+bool numbered_path_read(const numbered_path *path, const char *last_part, uint64_t *number);
+
 /* The same with one %s beside the number, which stays in the names as it is. */
 bool numbered_path_parse_faces(const char *pattern, numbered_path *path);
 

@@ -217,6 +217,14 @@ static int take_word(cli_options *options, unsigned command, const char *command
         return message_usage(
             "%s takes one input, but both %s and %s are given; put a pattern such as '*.exr' in quotes", command_name,
             options->input, word);
+    if (command == COMMAND_COMPARE && (options->input == NULL || options->reference == NULL)) {
+        *(options->input == NULL ? &options->input : &options->reference) = word;
+        return EXIT_CODE_OK;
+    }
+    if (command == COMMAND_COMPARE)
+        return message_usage("compare takes a picture and its reference, but %s is given as well; put patterns such as "
+                             "'out/*.exr' in quotes",
+                             word);
     if (command & COMMANDS_OF_SCENES)
         return message_usage("%s does not know what '%s' is; write --mesh or --env before a file's name", command_name,
                              word);

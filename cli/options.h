@@ -17,7 +17,9 @@ enum {
     COMMAND_INSPECT = 1 << 5,
     COMMAND_SAMPLES = 1 << 6,
     COMMANDS_OF_SCENES = COMMAND_RENDER | COMMAND_SAMPLES, /* which light a mesh */
-    COMMAND_ALL = COMMANDS_OF_SCENES | COMMAND_INFO | COMMAND_HELP | COMMAND_BENCH | COMMAND_CONVERT | COMMAND_INSPECT
+    COMMAND_COMPARE = 1 << 7,
+    COMMAND_ALL = COMMANDS_OF_SCENES | COMMAND_INFO | COMMAND_HELP | COMMAND_BENCH | COMMAND_CONVERT | COMMAND_INSPECT |
+                  COMMAND_COMPARE
 };
 
 /* Lists, separated by commas, that bench walks through; some are single values in other commands. */
@@ -53,6 +55,14 @@ typedef struct samples_options {
     uint32_t day_frames; /* 0: not given */
 } samples_options;
 
+/* What compare alone takes. */
+typedef struct compare_options {
+    const char *mask, *json, *out, *map;
+    double exposure; /* stops; NaN means auto */
+    double range;    /* of the colours; 0: not given */
+    double pixels_per_degree;
+} compare_options;
+
 /* What the command line says. A pointer that is NULL means that the option was not given and has no fixed default. */
 typedef struct cli_options {
     const char *env, *layout;
@@ -81,11 +91,13 @@ typedef struct cli_options {
 
     uint32_t max_pixels, max_mesh_memory, max_mesh_seconds; /* 0: not given; memory in MiB */
 
-    const char *input; /* of convert and inspect: the SRC that follows the command */
+    const char *input;     /* of convert and inspect: the SRC that follows the command; of compare: the picture */
+    const char *reference; /* of compare: what follows the picture; of render: --reference */
     bench_options bench;
     convert_options convert;
     inspect_options inspect;
     samples_options samples;
+    compare_options compare;
 
     const char *backend;
     uint32_t threads; /* 0: one per logical core */
@@ -116,6 +128,7 @@ typedef enum option_group {
     GROUP_CONVERT,
     GROUP_INSPECT,
     GROUP_SAMPLES,
+    GROUP_COMPARE,
     GROUP_BENCH,
     GROUP_PROGRAM,
     GROUP_COUNT

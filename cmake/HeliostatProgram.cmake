@@ -11,7 +11,8 @@ set(PROGRAM_SOURCES
     cli/asset.c cli/bench_camera.c cli/bench_cube.c cli/bench_curve.c cli/bench_estimate.c cli/bench_flops.c
     cli/bench_frame.c cli/bench_json.c cli/bench_light.c cli/bench_machine.c cli/bench_memcpy.c cli/bench_mesh.c
     cli/bench_peak.c cli/bench_plan.c cli/bench_pools.c cli/bench_rays.c cli/bench_result.c cli/bench_run.c
-    cli/bench_scene.c cli/bench_series.c cli/bench_table.c cli/bench_team.c cli/command_bench.c cli/command_convert.c cli/command_info.c
+    cli/bench_scene.c cli/bench_series.c cli/bench_table.c cli/bench_team.c cli/command_bench.c cli/command_compare.c cli/command_convert.c cli/command_info.c
+    cli/compare_plan.c cli/compared_files.c cli/comparison_report.c cli/picture_file.c cli/picture_list.c
     cli/command_inspect.c cli/convert_plan.c cli/face.c cli/figure_path.c cli/input_source.c cli/inspect_json.c cli/inspect_judge.c
     cli/inspect_measure.c cli/inspect_spot.c cli/inspect_text.c cli/map_converter.c cli/map_shape.c cli/map_turn.c
     cli/command_render.c cli/command_samples.c cli/contact_sheet.c cli/day_exposure.c cli/finished_frame.c cli/frame_label.c cli/frame_sink.c cli/frame_warnings.c cli/light_source.c
@@ -26,12 +27,12 @@ if(HELIO_WITH_CAIRO)
     if(NOT CAIRO_FOUND)
         message(FATAL_ERROR "cairo was not found: install libcairo2-dev, or build without it by -DHELIO_WITH_CAIRO=OFF.")
     endif()
-    list(APPEND PROGRAM_SOURCES cli/cube_cross.c cli/false_colour.c cli/figure.c cli/figure_text.c cli/inspect_chart.c cli/inspect_drawing.c cli/inspect_panel.c
+    list(APPEND PROGRAM_SOURCES cli/cube_cross.c cli/error_figure.c cli/false_colour.c cli/figure.c cli/figure_text.c cli/inspect_chart.c cli/inspect_drawing.c cli/inspect_panel.c
          cli/inspect_picture.c cli/samples_bars.c cli/samples_figure.c cli/samples_map.c cli/samples_marks.c
          cli/samples_panel.c cli/samples_sheet.c)
     list(APPEND FEATURE_DEFINITIONS HELIO_WITH_CAIRO=1)
 else()
-    list(APPEND PROGRAM_SOURCES cli/inspect_no_picture.c cli/samples_no_picture.c)
+    list(APPEND PROGRAM_SOURCES cli/error_no_figure.c cli/inspect_no_picture.c cli/samples_no_picture.c)
 endif()
 
 # The arithmetic peak that bench compares with, for each instruction set as the kernels.

@@ -769,6 +769,7 @@ static void test_a_layer_is_read_by_its_name(void **state)
             for (int c = 0; c < 3; c++)
                 assert_true(image->rgb[3 * i + c] == values[layers[k].first[c]][i]);
         assert_int_equal(image->alpha != NULL, layers[k].layer == NULL);
+        assert_false(image->is_encoded);
         helio_image_destroy(f->context, image);
     }
     unlink(path);

@@ -330,6 +330,7 @@ static void test_png_rgb_and_alpha_of_8_bits(void **state)
         assert_float_equal(image->rgb[i], srgb_decode((float)rgb[i] / 255), 0);
     assert_float_equal(image->alpha[0], 0.2f, 1e-7f);
     assert_float_equal(image->alpha[1], 1, 0);
+    assert_true(image->is_encoded);
     assert_int_equal(bad_pixels(image), 0);
     helio_image_destroy(f->context, image);
 

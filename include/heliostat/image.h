@@ -52,8 +52,10 @@ typedef struct helio_bad_pixels {
 /* A picture that was read. Own it through helio_image_destroy(). */
 typedef struct helio_image {
     uint32_t width, height; /* pixels, each >= 1 */
-    float *rgb;   /* [height][width][3], linear Rec. 709; may hold NaN, Inf and negative values as the file does */
-    float *alpha; /* [height][width] in 0..1, or NULL where the file has none */
+    float *rgb;      /* [height][width][3], linear Rec. 709; may hold NaN, Inf and negative values as the file does */
+    float *alpha;    /* [height][width] in 0..1, or NULL where the file has none */
+    bool is_encoded; /* the file holds sRGB, as PNG and JPEG do, and not radiance: what a screen shows. Its colours are
+                        straight where it has alpha; others are premultiplied */
     helio_layout layout;  /* what the file says (OpenEXR's envmap attribute, or a comment "layout: NAME"), else AUTO */
     helio_bad_pixels bad; /* as stored, before any colour conversion, which may make more of rgb negative: what is out
                              of Rec. 709's gamut. helio_environment_info.bad counts these, too */

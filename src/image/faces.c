@@ -202,6 +202,7 @@ static helio_status add_face(helio_context *context, const face_files *files, in
         const image_file file = {.context = context, .path = what, .max_pixels = max_pixels};
         HELIO_TRY(image_create(&file, size, UINT64_C(6) * size, false, 0, strip));
         (*strip)->layout = HELIO_LAYOUT_STRIP;
+        (*strip)->is_encoded = picture->is_encoded;
     }
     if ((*strip)->width != size)
         return fail(HELIO_ERR_DATA, "%s%s has %u x %u pixels, and %s has %u x %u; all six faces must have one size",

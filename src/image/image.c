@@ -76,7 +76,9 @@ helio_status image_decode(const image_file *file, helio_image **image)
     if (kind->read == NULL)
         return fail(HELIO_ERR_UNSUPPORTED, "%s is %s, which this build cannot read; build with it or convert the file",
                     file->path, kind->name);
-    return kind->read(file, image);
+    HELIO_TRY(kind->read(file, image));
+    (*image)->is_encoded = kind->encoded;
+    return HELIO_OK;
 }
 
 static uint64_t default_max_pixels(uint64_t file_size)
