@@ -147,6 +147,8 @@ void output_plan_warn(const render_plan *plan)
         message_warning("%s cannot hold the alpha channel of this picture; EXR and PNG can", plan->out);
     if ((options->codec != NULL || options->quality > 0 || options->hdr) && !is_video)
         message_warning("--codec, --quality and --hdr change nothing in %s, which is no video", plan->out);
+    if (options->reference != NULL && options->stats == NULL && !options->verbose)
+        message_warning("--reference changes nothing: errors are told by --stats and --verbose, and neither is given");
     if (options->resume && is_video)
         message_warning("%s is made anew: a video cannot be resumed, numbered pictures can", plan->out);
     if (options->resume && plan->sink == SINK_PICTURE)
@@ -196,6 +198,12 @@ static int check_glob(const render_plan *plan)
                          plan->out, glob);
 }
 
+/* "" without one. With a number in it, it is no file, and frames look for themselves. */
+static const char *reference_of(const render_plan *plan)
+{
+    return plan->options->reference != NULL ? plan->options->reference : "";
+}
+
 static int check_sink(const render_plan *plan, helio_source *source, const char *const *inputs)
 {
     char name[SINK_PATH_SIZE];
@@ -221,7 +229,7 @@ static int make_folder(render_plan *plan)
 
 int output_plan_check_beside(const render_plan *plan, const char *option, const char *path, helio_source *source)
 {
-    const char *const inputs[] = {plan->mesh, NULL};
+    const char *const inputs[] = {plan->mesh, reference_of(plan), NULL};
     numbered_path names;
     if (path == NULL)
         return EXIT_CODE_OK;
@@ -255,7 +263,7 @@ int output_plan_check_names(const render_plan *plan, helio_source *source)
 
 int output_plan_settle(render_plan *plan, helio_source *source)
 {
-    const char *const inputs[] = {plan->mesh, NULL};
+    const char *const inputs[] = {plan->mesh, reference_of(plan), NULL};
     int code = choose_out(plan, helio_source_get_info(source).is_dynamic);
     if (code == EXIT_CODE_OK)
         code = check_glob(plan);

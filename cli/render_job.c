@@ -125,11 +125,14 @@ int render_job_open(render_job *job, const cli_options *options)
         code = render_job_open_source(job);
     if (code == EXIT_CODE_OK)
         code = render_plan_settle(&job->plan, job->source);
+    if (code == EXIT_CODE_OK)
+        code = frame_error_open(&job->error, job->context, options->reference, options->size);
     return code == EXIT_CODE_OK ? render_job_open_scene(job) : code;
 }
 
 void render_job_close(render_job *job)
 {
+    frame_error_close(&job->error);
     helio_renderer_destroy(job->renderer);
     helio_scene_destroy(job->scene);
     if (job->mesh != NULL)

@@ -3,6 +3,7 @@
 #ifndef HELIOSTAT_CLI_RENDER_JOB_H
 #define HELIOSTAT_CLI_RENDER_JOB_H
 
+#include "frame_error.h"
 #include "frame_warnings.h"
 #include "progress.h"
 #include "render_plan.h"
@@ -20,7 +21,8 @@ typedef struct render_job {
     helio_camera camera;
     progress_bar progress;
     frame_warnings warnings;
-    uint32_t passes; /* of the latest frame */
+    frame_error error; /* against --reference */
+    uint32_t passes;   /* of the latest frame */
 } render_job;
 
 /* Understands the options, opens the source and starts reading it, and loads the scene. Returns an exit code; one

@@ -148,26 +148,39 @@ static bool take_finished(render_sequence *sequence, const helio_source_frame *f
 static bool check_name(render_sequence *sequence, const helio_source_frame *frame)
 {
     char name[SINK_PATH_SIZE];
-    const char *const inputs[] = {sequence->job->plan.mesh, NULL};
+    char reference[FRAME_ERROR_PATH];
+    const char *const inputs[] = {sequence->job->plan.mesh, reference, NULL};
+    if (!frame_error_name(&sequence->job->error, frame->index, reference))
+        reference[0] = 0; /* a name that is too long is that of no file */
     if (sequence->job->plan.sink != SINK_NUMBERED || !frame_sink_name(&sequence->sink, frame->index, name))
         return true;
     return check_code(sequence, output_file_check("out", name, sequence->job->source, inputs));
 }
 
+static bool measure_error(render_sequence *sequence, stats_frame *stats)
+{
+    render_job *job = sequence->job;
+    const helio_picture picture = helio_renderer_picture(job->renderer);
+    return check_code(sequence,
+                      frame_error_measure(&job->error, &picture, sequence->exposure, job->plan.tonemap, stats));
+}
+
 static bool render_frame(render_sequence *sequence, const helio_source_frame *frame, stats_frame *stats)
 {
     bool is_whole;
+    if (!check_code(sequence, frame_error_prepare(&sequence->job->error, frame->index, stats)))
+        return false;
     if (!check(sequence, render_job_render(sequence->job, frame->index, stats, &is_whole)))
         return false;
     if (!is_whole)
         return fail_with(sequence, "");
-    return write_frame(sequence, frame, stats);
+    return measure_error(sequence, stats) && write_frame(sequence, frame, stats);
 }
 
 /* started: when the work on this frame began. */
 static bool end_frame(render_sequence *sequence, stats_frame *stats, double started)
 {
-    stats->total_ms = machine_milliseconds() - started;
+    stats->total_ms = machine_milliseconds() - started - stats->error_ms;
     if (sequence->job->plan.options->stats == NULL || stats_list_add(&sequence->stats, stats))
         return true;
     return fail_with(sequence, "there is no memory for more statistics");
@@ -213,6 +226,8 @@ static void end(render_sequence *sequence)
     if (frame_sink_close(&sequence->sink) != HELIO_OK && !sequence->failed)
         fail_with(sequence, sequence->sink.error);
     frame_warnings_end(&sequence->job->warnings);
+    if (sequence->job->plan.options->verbose)
+        frame_error_tell(&sequence->job->error);
     bool is_complete = sequence->frames > 0 && sequence->frames == sequence->job->source_info.frame_count;
     if (interrupt_signal() != 0 && !is_complete && !sequence->failed)
         fail_with(sequence, "");

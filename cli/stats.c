@@ -34,6 +34,10 @@ static json_t *frame_object(const stats_frame *frame)
     json_object_set_new(object, "samples_useful", json_whole(frame->samples_useful));
     json_object_set_new(object, "bad_texels", bad);
     json_object_set_new(object, "flux", json_number(frame->flux));
+    if (frame->has_error)
+        json_object_set_new(
+            object, "error",
+            json_pack("{so so}", "relmse", json_number(frame->relmse), "lab_mean", json_number(frame->lab_mean)));
     return object;
 }
 

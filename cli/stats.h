@@ -20,6 +20,9 @@ typedef struct stats_frame {
     uint64_t nan, infinite, negative; /* pixels of the source as stored */
     uint64_t out_of_gamut;            /* pixels that became negative when their colours were converted */
     double flux;                      /* of the whole map, before --intensity */
+    bool has_error;                   /* --reference was given */
+    double relmse, lab_mean;          /* against it; NaN: there is none */
+    double error_ms;                  /* what measuring these took, which is no part of total_ms */
 } stats_frame;
 
 /* stored: as the source has them. seen: by the environment, where what colour conversion made negative has come to

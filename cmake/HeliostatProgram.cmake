@@ -15,7 +15,7 @@ set(PROGRAM_SOURCES
     cli/compare_plan.c cli/compared_files.c cli/comparison_report.c cli/picture_file.c cli/picture_list.c
     cli/command_inspect.c cli/convert_plan.c cli/face.c cli/figure_path.c cli/input_source.c cli/inspect_json.c cli/inspect_judge.c
     cli/inspect_measure.c cli/inspect_spot.c cli/inspect_text.c cli/map_converter.c cli/map_shape.c cli/map_turn.c
-    cli/command_render.c cli/command_samples.c cli/contact_sheet.c cli/day_exposure.c cli/finished_frame.c cli/frame_label.c cli/frame_sink.c cli/frame_warnings.c cli/light_source.c
+    cli/command_render.c cli/command_samples.c cli/contact_sheet.c cli/day_exposure.c cli/finished_frame.c cli/frame_error.c cli/frame_label.c cli/frame_sink.c cli/frame_warnings.c cli/light_source.c
     cli/numbered_path.c cli/output_plan.c cli/render_job.c cli/render_sequence.c cli/sequence_report.c cli/sheet_labels.c cli/shown_picture.c
     cli/help.c cli/help_texts.c cli/interrupt.c cli/json_file.c cli/list.c
     cli/machine.c cli/main.c cli/manual.c cli/message.c cli/number.c cli/option_table.c cli/options.c cli/output_file.c

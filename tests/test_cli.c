@@ -35,7 +35,7 @@ static bool same_bytes(const char *path, const char *other_path)
     "--weighting=paper --no-beta --decorrelate=none --visibility=none --seed=7 --size=32x24 --out=all.exr --aovs "     \
     "--background=env --exposure=-1.5 --tonemap=clip --stats=all.json --max-pixels=1 "                                 \
     "--frames=0..0 --day-frames=9 --on-missing=hold --transfer=pq --fps=30 --codec=ffv1 --quality=0.5 --hdr "          \
-    "--contact-sheet=sheet.png --resume --seed-mode=frame "                                                            \
+    "--contact-sheet=sheet.png --reference=reference.pfm --resume --seed-mode=frame "                                  \
     "--max-mesh-memory=300 --max-mesh-seconds=60 --backend=cpu --threads=2 --verbose"
 
 /* Is --name there as a word of its own? */
@@ -69,7 +69,8 @@ static void test_help_of_render_mentions_every_option(void **state)
 static void test_help_fits_100_columns(void **state)
 {
     (void)state;
-    static const char *const lines[] = {"--help", "render --help", "info --help", "help --help"};
+    static const char *const lines[] = {"--help",         "render --help", "convert --help", "inspect --help",
+                                        "compare --help", "bench --help",  "info --help",    "help --help"};
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         succeeds(lines[i]);
         assert_int_equal(program_err[0], 0);
@@ -602,6 +603,11 @@ static void test_all_options_together(void **state)
 {
     (void)state;
     skip_without(NEEDS_ALL);
+    static const float black[24][32][4];
+    const helio_picture reference = {.width = 32, .height = 24, .rgba = black[0][0]};
+    helio_context *context = make_context(1, NULL);
+    assert_ok(helio_picture_write(context, "reference.pfm", &reference, NULL));
+    helio_context_destroy(context);
     succeeds("render " ALL_OPTIONS);
     assert_true(exists("all.exr") && exists("all.json"));
     assert_non_null(strstr(program_err, "triangles"));

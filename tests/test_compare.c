@@ -525,6 +525,91 @@ static void exposure_of_a_sequence_is_that_of_its_middle(void **state)
     assert_true(fabs(exposure_of("m_%d.pfm m_%d.pfm") - 2) < 1e-5);
 }
 
+/* ---- render --reference -------------------------------------------------------------------- */
+
+#define SMALL "render --mesh tetrahedron.obj --size 32x24 --env-size 8 "
+
+/* A map of two lights, so that few samples are noisy. */
+static void write_map(const char *path, float light)
+{
+    test_picture map;
+    for (size_t i = 0; i < PIXELS; i++)
+        for (int c = 0; c < 3; c++)
+            map.rgba[i][c] = i % 7 == 0 ? light : 0.1f;
+    write_sized(path, 16, 8, &map, false);
+}
+
+/* The same numbers as compare has. */
+static void assert_same_errors(const json_t *stats, size_t i, const char *picture, const char *reference)
+{
+    char words[256];
+    json_t *error = member(json_array_get(member(stats, "frames"), i), "error");
+    double exposure = number_of(member(stats, "summary"), "ev");
+    snprintf(words, sizeof words, "%s %s --exposure=%.9g", picture, reference, exposure);
+    json_t *seen = compare(words);
+    assert_true(number_of(error, "relmse") > 0);
+    assert_number(seen, "relmse", number_of(error, "relmse"));
+    if (has_lab())
+        assert_number(seen, "lab_mean", number_of(error, "lab_mean"));
+    else
+        assert_true(json_is_null(member(error, "lab_mean")));
+    assert_string_equal(text_of(member(seen, "mask"), "from"), "object.A of the picture");
+    json_decref(seen);
+}
+
+static void render_measures_its_error(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER | NEEDS_EXR);
+    write_map("map.pfm", 5);
+    succeeds(SMALL "--env map.pfm --spp 256 --seed 3 --out truth.exr");
+    succeeds(SMALL "--env map.pfm --spp 2 --out noisy.exr --reference truth.exr --stats stats.json -v");
+    assert_non_null(strstr(program_err, "mean error against truth.exr: relmse "));
+    json_t *stats = load_json("stats.json");
+    assert_same_errors(stats, 0, "noisy.exr", "truth.exr");
+    json_decref(stats);
+    succeeds(SMALL "--env map.pfm --spp 2 --out noisy.exr --stats stats.json");
+    stats = load_json("stats.json");
+    assert_null(json_object_get(json_array_get(member(stats, "frames"), 0), "error"));
+    json_decref(stats);
+}
+
+static void render_measures_sequences_frame_by_frame(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER | NEEDS_EXR);
+    write_map("map_3.pfm", 5);
+    write_map("map_4.pfm", 20);
+    succeeds(SMALL "--env map_%d.pfm --spp 256 --seed 3 --out truth_%d.exr");
+    succeeds(SMALL "--env map_%d.pfm --spp 2 --out noisy_%d.exr --reference truth_%d.exr --stats stats.json -v");
+    assert_non_null(strstr(program_err, "mean error against truth_%d.exr: relmse "));
+    json_t *stats = load_json("stats.json");
+    assert_same_errors(stats, 0, "noisy_3.exr", "truth_3.exr");
+    assert_same_errors(stats, 1, "noisy_4.exr", "truth_4.exr");
+    json_decref(stats);
+    assert_int_equal(unlink("truth_4.exr"), 0);
+    assert_int_equal(run_program(SMALL "--env map_%d.pfm --spp 2 --out noisy_%d.exr --reference truth_%d.exr -v"), 1);
+    assert_true(strstr(program_err, "truth_4.exr cannot be opened") && strstr(program_err, "1 of 2 frames written"));
+    assert_int_equal(run_program(SMALL "--env map_%d.pfm --spp 2 --out truth_%d.exr --reference truth_%d.exr -v"), 1);
+    assert_non_null(strstr(program_err, "truth_3.exr would replace an input"));
+}
+
+static void references_that_cannot_be_used_are_told(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+    write_map("map.pfm", 5);
+    write_grey("small.pfm", 1);
+    fails(SMALL "--env map.pfm --out a.pfm --stats s.json --reference small.pfm", 1,
+          "small.pfm has 24x16 pixels, and what is rendered 32x24");
+    fails(SMALL "--env map.pfm --out a.pfm --stats s.json --reference absent.pfm", 1, "absent.pfm");
+    fails(SMALL "--env map.pfm --out small.pfm --stats s.json --reference small.pfm", 1, "would replace an input");
+    fails(SMALL "--env map.pfm --out a.pfm --stats small.pfm --reference small.pfm", 1, "would replace an input");
+    assert_false(exists("a.pfm"));
+    succeeds(SMALL "--env map.pfm --spp 1 --size 24x16 --out a.pfm --reference small.pfm");
+    assert_non_null(strstr(program_err, "--reference changes nothing"));
+}
+
 #define TEST(name) cmocka_unit_test_setup(name, set_up_folder)
 
 int main(void)
@@ -548,6 +633,9 @@ int main(void)
         TEST(errors_of_sequences_are_written_one_by_one),
         TEST(sequences_that_do_not_fit_are_told),
         TEST(exposure_of_a_sequence_is_that_of_its_middle),
+        TEST(render_measures_its_error),
+        TEST(render_measures_sequences_frame_by_frame),
+        TEST(references_that_cannot_be_used_are_told),
     };
     return cmocka_run_group_tests(tests, set_up_program, tear_down_program);
 }
