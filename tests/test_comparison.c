@@ -81,12 +81,19 @@ static void fill(float (*pixels)[3], float r, float g, float b)
         memcpy(pixels[i], rgb, sizeof rgb);
 }
 
-/* Smooth and coloured, 0.1..0.9. */
-static void fill_scene(float (*pixels)[3])
+/* Smooth and coloured, 0.1..0.9; moved to the left by some pixels. */
+static void fill_moved_scene(float (*pixels)[3], float moved)
 {
     for (size_t i = 0; i < PIXELS; i++)
-        for (size_t c = 0; c < 3; c++)
-            pixels[i][c] = 0.5f + 0.4f * sinf(0.21f * (float)(i % WIDTH) + 0.13f * (float)(i / WIDTH) * (float)(c + 1));
+        for (size_t c = 0; c < 3; c++) {
+            float x = (float)(i % WIDTH) + moved, y = (float)(i / WIDTH);
+            pixels[i][c] = 0.5f + 0.4f * sinf(0.21f * x + 0.13f * y * (float)(c + 1));
+        }
+}
+
+static void fill_scene(float (*pixels)[3])
+{
+    fill_moved_scene(pixels, 0);
 }
 
 /* The reference with noise between -amplitude and amplitude. */
@@ -341,6 +348,26 @@ static void flip_of_opposites_is_near_one(void **state)
     fill(f->picture, 0, 0, 1);
     fill(f->reference, 0, 1, 0);
     assert_near(compare(f, &pair).flip, 1, 1e-6);
+}
+
+/* Means by the authors' own evaluator (1.7) of the same pictures. It computes in floats, in another order. */
+static void flip_is_that_of_its_authors(void **state)
+{
+    static const struct {
+        float moved, pixels_per_degree;
+        double flip;
+    } known[] = {{1, 67, 0.298660}, {1, 20, 0.311543}, {4, 67, 0.700214}, {4, 20, 0.738878}};
+    fixture *f = *state;
+    fill_scene(f->reference);
+    helio_comparison_pair pair = pair_of(f);
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
+        helio_comparison_desc desc = usual_desc();
+        desc.pixels_per_degree = known[i].pixels_per_degree;
+        helio_comparison *comparison = make_comparison(f, &desc);
+        fill_moved_scene(f->picture, known[i].moved);
+        assert_near(measure(comparison, &pair).flip, known[i].flip, 5e-5);
+        helio_comparison_destroy(comparison);
+    }
 }
 
 static void flip_is_symmetric(void **state)
@@ -765,6 +792,7 @@ int main(void)
         TEST(psnr_has_its_closed_form),
         TEST(equal_pictures_have_no_error),
         TEST(flip_of_opposites_is_near_one),
+        TEST(flip_is_that_of_its_authors),
         TEST(flip_is_symmetric),
         TEST(errors_grow_with_noise),
         TEST(flip_does_not_see_what_is_far),

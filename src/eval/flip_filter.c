@@ -103,44 +103,66 @@ static int64_t clamp(int64_t value, int64_t least, int64_t greatest)
     return value < least ? least : value > greatest ? greatest : value;
 }
 
-static void filter_down(const row_window *window, int plane, const flip_kernel *kernel, float *restrict out)
+/* Row y, counted from the window's, at the column of the first pixel that is in the picture. */
+static const float *line_of(const row_window *window, int plane, int y, int64_t left)
 {
     const flip_picture *picture = window->picture;
+    int64_t row = clamp((int64_t)window->row + y, 0, picture->height - 1);
+    return picture->planes[plane] + (size_t)row * picture->width + left;
+}
+
+/* The sum of some pixels that follow each other, times the weights: lines[k] has weight k. Sums of a block stay in
+ * registers. */
+static void weigh(const float *const *lines, const flip_kernel *kernel, size_t count, float *restrict out)
+{
+    enum { BLOCK = 16 };
+    int taps = 2 * kernel->radius + 1;
+    size_t i = 0;
+    for (; i + BLOCK <= count; i += BLOCK) {
+        float sums[BLOCK] = {0};
+        for (int tap = 0; tap < taps; tap++)
+            for (size_t k = 0; k < BLOCK; k++)
+                sums[k] += kernel->weights[tap] * lines[tap][i + k];
+        memcpy(out + i, sums, sizeof sums);
+    }
+    for (; i < count; i++) {
+        out[i] = 0;
+        for (int tap = 0; tap < taps; tap++)
+            out[i] += kernel->weights[tap] * lines[tap][i];
+    }
+}
+
+static void filter_down(const row_window *window, int plane, const flip_kernel *kernel, float *out)
+{
+    const flip_picture *picture = window->picture;
+    const float *lines[2 * FLIP_RADIUS + 1];
     int64_t left = clamp(window->first, 0, picture->width - 1);
     int64_t right = clamp(window->first + window->count - 1, 0, picture->width - 1);
     float *inside = out + (left - window->first);
     size_t count = (size_t)(right - left + 1);
-    memset(out, 0, window->count * sizeof *out);
-    for (int y = -kernel->radius; y <= kernel->radius; y++) {
-        int64_t row = clamp((int64_t)window->row + y, 0, picture->height - 1);
-        const float *restrict line = picture->planes[plane] + (size_t)row * picture->width + left;
-        float weight = kernel->weights[y + kernel->radius];
-        for (size_t i = 0; i < count; i++)
-            inside[i] += weight * line[i];
-    }
+    for (int y = -kernel->radius; y <= kernel->radius; y++)
+        lines[y + kernel->radius] = line_of(window, plane, y, left);
+    weigh(lines, kernel, count, inside);
     for (float *border = out; border < inside; border++)
         *border = *inside;
     for (float *border = inside + count; border < out + window->count; border++)
         *border = inside[count - 1];
 }
 
-/* rows: [count + 2 FLIP_RADIUS] */
-static void filter_across(const float *restrict rows, const flip_kernel *kernel, uint32_t count, float *restrict out)
+/* row: [count + 2 FLIP_RADIUS] */
+static void filter_across(const float *row, const flip_kernel *kernel, uint32_t count, float *out)
 {
-    memset(out, 0, count * sizeof *out);
-    for (int x = -kernel->radius; x <= kernel->radius; x++) {
-        const float *restrict shifted = rows + FLIP_RADIUS + x;
-        float weight = kernel->weights[x + kernel->radius];
-        for (uint32_t i = 0; i < count; i++)
-            out[i] += weight * shifted[i];
-    }
+    const float *lines[2 * FLIP_RADIUS + 1];
+    for (int x = -kernel->radius; x <= kernel->radius; x++)
+        lines[x + kernel->radius] = row + FLIP_RADIUS + x;
+    weigh(lines, kernel, count, out);
 }
 
 static void filter(const row_window *window, int plane, const flip_kernel *down, const flip_kernel *across, float *out)
 {
-    float rows[FLIP_WINDOW];
-    filter_down(window, plane, down, rows);
-    filter_across(rows, across, window->count - 2 * FLIP_RADIUS, out);
+    float row[FLIP_WINDOW];
+    filter_down(window, plane, down, row);
+    filter_across(row, across, window->count - 2 * FLIP_RADIUS, out);
 }
 
 static void see_colours(const flip_filter *f, const row_window *window, uint32_t count, flip_view *view)

@@ -127,11 +127,12 @@ static void keep_opponents(const helio_comparison *comparison, size_t pixel, flo
     }
 }
 
-static void leave_out(const helio_comparison *comparison, size_t pixel)
+/* NaN in the maps of what later passes fill tells them what to leave out. */
+static void mark(const helio_comparison *comparison, size_t pixel, float value)
 {
     for (int i = 0; i < ERROR_MAPS; i++)
         if (comparison->maps[i] != NULL)
-            comparison->maps[i][pixel] = NAN;
+            comparison->maps[i][pixel] = value;
 }
 
 static void compare_row(void *data, size_t row)
@@ -148,12 +149,10 @@ static void compare_row(void *data, size_t row)
                                 shown[side]);
         if (has_flip)
             keep_opponents(comparison, i, shown);
+        mark(comparison, i, is_compared ? 0 : NAN);
         if (is_compared) {
-            comparison->maps[HELIO_ERROR_MAP_RELATIVE][i] = 0;
             compare_radiance(work, i, sums);
             compare_shown(work, i, shown[0], shown[1], sums);
-        } else {
-            leave_out(comparison, i);
         }
     }
 }
@@ -189,8 +188,6 @@ static void flip_row(void *data, size_t row)
     for (uint32_t i = 0; i < comparison->width; i++)
         if (measurement_compares(work, first + i))
             comparison->rows[row].flip += (double)errors[i];
-        else
-            errors[i] = NAN;
 }
 
 /* ---- all of it ---------------------------------------------------------------------------- */
