@@ -72,7 +72,9 @@ static int match_lists(compare_plan *plan)
 {
     const picture_list *pictures = &plan->pictures;
     plan->frames = calloc(pictures->count, sizeof *plan->frames);
-    int code = plan->frames != NULL ? EXIT_CODE_OK : message_failure("no memory for %zu frames", pictures->count);
+    if (plan->frames == NULL)
+        return message_failure("no memory for %zu frames", pictures->count);
+    int code = EXIT_CODE_OK;
     for (size_t i = 0; i < pictures->count && code == EXIT_CODE_OK; i++) {
         compared_frame *frame = &plan->frames[i];
         frame->number = pictures->pictures[i].number;

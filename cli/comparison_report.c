@@ -6,6 +6,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #define METRIC(name, meaning, ...)                                                                                     \
     {                                                                                                                  \
@@ -25,7 +26,9 @@ const comparison_metric comparison_metrics[COMPARISON_METRICS] = {
 
 double comparison_metric_value(const comparison_metric *metric, const helio_comparison_info *info)
 {
-    return *(const double *)((const char *)info + metric->offset);
+    double value;
+    memcpy(&value, (const char *)info + metric->offset, sizeof value);
+    return value;
 }
 
 double comparison_metric_mean(const comparison_metric *metric, const comparison_report *report)
@@ -47,9 +50,11 @@ double comparison_metric_mean(const comparison_metric *metric, const comparison_
 
 static uint64_t total_of(const comparison_report *report, size_t offset)
 {
-    uint64_t sum = 0;
-    for (size_t i = 0; i < report->count; i++)
-        sum += *(const uint64_t *)((const char *)&report->frames[i].info + offset);
+    uint64_t sum = 0, value;
+    for (size_t i = 0; i < report->count; i++) {
+        memcpy(&value, (const char *)&report->frames[i].info + offset, sizeof value);
+        sum += value;
+    }
     return sum;
 }
 
@@ -113,13 +118,6 @@ void comparison_report_print(const comparison_report *report)
 
 /* ---- JSON ---------------------------------------------------------------------------------- */
 
-/* Names of files may be no UTF-8. */
-static json_t *name_of(const char *name)
-{
-    json_t *text = name != NULL ? json_string(name) : NULL;
-    return text != NULL ? text : json_null();
-}
-
 static json_t *bad_object(const helio_bad_pixels *bad)
 {
     return json_pack("{so so so}", "nan", json_whole(bad->nan), "inf", json_whole(bad->infinite), "negative",
@@ -130,7 +128,7 @@ static json_t *mask_object(const compared_frame *frame)
 {
     json_t *object = json_object();
     json_object_set_new(object, "from", json_string(mask_words(frame->mask_origin)));
-    json_object_set_new(object, "file", name_of(frame->mask));
+    json_object_set_new(object, "file", json_text(frame->mask));
     return object;
 }
 
@@ -147,8 +145,8 @@ static json_t *frame_object(const compared_frame *frame)
 {
     json_t *object = json_object();
     json_object_set_new(object, "index", json_whole(frame->number));
-    json_object_set_new(object, "picture", name_of(frame->picture));
-    json_object_set_new(object, "reference", name_of(frame->reference));
+    json_object_set_new(object, "picture", json_text(frame->picture));
+    json_object_set_new(object, "reference", json_text(frame->reference));
     for (int m = 0; m < COMPARISON_METRICS; m++)
         json_object_set_new(object, comparison_metrics[m].name,
                             json_number(comparison_metric_value(&comparison_metrics[m], &frame->info)));
@@ -173,8 +171,8 @@ static json_t *viewing_object(const comparison_report *report)
 static json_t *report_object(const comparison_report *report)
 {
     json_t *object = json_object(), *frames = json_array();
-    json_object_set_new(object, "picture", name_of(report->picture));
-    json_object_set_new(object, "reference", name_of(report->reference));
+    json_object_set_new(object, "picture", json_text(report->picture));
+    json_object_set_new(object, "reference", json_text(report->reference));
     json_object_set_new(object, "size", json_pack("[oo]", json_whole(report->width), json_whole(report->height)));
     json_object_set_new(object, "viewing", viewing_object(report));
     for (int m = 0; m < COMPARISON_METRICS; m++)

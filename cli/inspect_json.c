@@ -78,8 +78,7 @@ static json_t *clipping_object(const inspect_findings *found)
 static json_t *findings_object(const inspect_findings *found)
 {
     json_t *object = json_object();
-    json_t *name = json_string(found->name); /* NULL if it is no UTF-8 */
-    json_object_set_new(object, "name", name != NULL ? name : json_null());
+    json_object_set_new(object, "name", json_text(found->name));
     json_object_set_new(object, "file", file_object(found));
     json_object_set_new(object, "layout", layout_object(found));
     json_object_set_new(object, "cube_size", json_whole(found->cube_size));

@@ -21,6 +21,12 @@ json_t *json_whole(uint64_t value)
     return json_integer((json_int_t)value);
 }
 
+json_t *json_text(const char *text)
+{
+    json_t *string = text != NULL ? json_string(text) : NULL;
+    return string != NULL ? string : json_null();
+}
+
 static int fail_to_write(const char *option, const char *path)
 {
     return message_failure("%s cannot be written: %s; give --%s another FILE", path, strerror(errno), option);

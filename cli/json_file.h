@@ -10,6 +10,9 @@
 json_t *json_number(double value);
 json_t *json_whole(uint64_t value);
 
+/* Null where there is none, or where it is no UTF-8, as names of files may be. */
+json_t *json_text(const char *text);
+
 /* Writes under a temporary name and renames. option: the one that named the path, for the sentence that tells of a
  * failure. object may be NULL: there was no memory for it. Returns an exit code. */
 int json_file_write(const char *option, const char *path, const json_t *object);

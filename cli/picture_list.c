@@ -36,7 +36,9 @@ static int add(picture_list *list, const char *folder, size_t length, const char
         return fail_for_memory(list);
     memcpy(path, folder, length);
     strcpy(path + length, name);
-    list->pictures[list->count++] = (listed_picture){path, number};
+    listed_picture *added = &list->pictures[list->count++];
+    added->path = path;
+    added->number = number;
     return EXIT_CODE_OK;
 }
 

@@ -13,19 +13,12 @@ static json_t *floats(const float *numbers)
     return json_pack("[fff]", (double)numbers[0], (double)numbers[1], (double)numbers[2]);
 }
 
-/* NULL if it is no UTF-8. */
-static json_t *text_or_null(const char *text)
-{
-    json_t *string = json_string(text);
-    return string != NULL ? string : json_null();
-}
-
 json_t *samples_json_make(const render_job *job)
 {
     const cli_options *options = job->plan.options;
     json_t *object = json_object();
-    json_object_set_new(object, "env", text_or_null(job->plan.light.specification));
-    json_object_set_new(object, "mesh", text_or_null(job->plan.mesh));
+    json_object_set_new(object, "env", json_text(job->plan.light.specification));
+    json_object_set_new(object, "mesh", json_text(job->plan.mesh));
     json_object_set_new(object, "size", json_pack("[oo]", json_whole(options->size[0]), json_whole(options->size[1])));
     json_object_set_new(object, "strategy",
                         json_string(helio_strategy_name(helio_strategy_resolve(job->plan.strategy))));

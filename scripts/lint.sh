@@ -20,5 +20,5 @@ echo 'cppcheck'
 cppcheck --quiet --error-exitcode=1 --std=c11 --enable=warning,performance,portability --inline-suppr \
     --suppress=missingIncludeSystem -j "$jobs" -I include -I src \
     -D HELIO_WITH_OPENEXR=1 -D HELIO_WITH_PNG=1 -D HELIO_WITH_JPEG=1 -D HELIO_WITH_ASSIMP=1 -D HELIO_WITH_EMBREE=1 \
-    -D HELIO_WITH_FFMPEG=1 -D HELIO_WITH_CAIRO=1 \
+    -D HELIO_WITH_FFMPEG=1 -D HELIO_WITH_LCMS2=1 -D HELIO_WITH_CAIRO=1 \
     -D HELIO_EMBREE_MAJOR=3 -D _GNU_SOURCE src cli

@@ -254,6 +254,14 @@ json_t *load_json(const char *path)
     return json;
 }
 
+json_t *member(const json_t *object, const char *key)
+{
+    json_t *value = json_object_get(object, key);
+    if (value == NULL)
+        fail_msg("no \"%s\" in %s", key, json_dumps(object, JSON_COMPACT));
+    return value;
+}
+
 double number_of(const json_t *object, const char *key)
 {
     const json_t *value = json_object_get(object, key);

@@ -77,7 +77,8 @@ size_t count_files(const char *folder); /* folders in it count as well */
 /* To be given to json_decref(). Fails the test if it is not JSON, or if an object has a key twice. */
 json_t *load_json(const char *path);
 
-/* Both fail the test if there is none under this key. */
+/* All fail the test if there is none under this key. */
+json_t *member(const json_t *object, const char *key);
 double number_of(const json_t *object, const char *key);
 const char *text_of(const json_t *object, const char *key);
 

@@ -81,14 +81,6 @@ static json_t *compare(const char *words)
     return load_json("seen.json");
 }
 
-static json_t *member(const json_t *object, const char *key)
-{
-    json_t *value = json_object_get(object, key);
-    if (value == NULL)
-        fail_msg("no \"%s\" in %s", key, json_dumps(object, JSON_COMPACT));
-    return value;
-}
-
 static void assert_number(const json_t *object, const char *key, double wanted)
 {
     double value = number_of(object, key);

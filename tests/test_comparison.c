@@ -52,6 +52,13 @@ static helio_comparison *make_comparison(fixture *f, const helio_comparison_desc
     return comparison;
 }
 
+static helio_comparison *make_flicker_comparison(fixture *f)
+{
+    helio_comparison_desc desc = usual_desc();
+    desc.flicker = true;
+    return make_comparison(f, &desc);
+}
+
 static helio_comparison_pair pair_of(const fixture *f)
 {
     return (helio_comparison_pair){.picture = f->picture[0], .reference = f->reference[0]};
@@ -566,9 +573,7 @@ static void flicker_of_an_alternating_error_is_known(void **state)
 {
     fixture *f = *state;
     const double d = 0.5, b = 2;
-    helio_comparison_desc desc = usual_desc();
-    desc.flicker = true;
-    helio_comparison *comparison = make_comparison(f, &desc);
+    helio_comparison *comparison = make_flicker_comparison(f);
     helio_comparison_pair pair = pair_of(f);
     fill(f->reference, 2, 2, 2);
     for (int frame = 0; frame < 4; frame++) {
@@ -594,9 +599,7 @@ static void flicker_of_an_alternating_error_is_known(void **state)
 static void flicker_is_of_the_error_not_of_the_light(void **state)
 {
     fixture *f = *state;
-    helio_comparison_desc desc = usual_desc();
-    desc.flicker = true;
-    helio_comparison *comparison = make_comparison(f, &desc);
+    helio_comparison *comparison = make_flicker_comparison(f);
     helio_comparison_pair pair = pair_of(f);
     fill(f->reference, 1, 1, 1);
     fill(f->picture, 1.25f, 1.25f, 1.25f);
@@ -616,9 +619,7 @@ static void flicker_is_of_the_error_not_of_the_light(void **state)
 static void flicker_of_new_noise_is_its_relative_error(void **state)
 {
     fixture *f = *state;
-    helio_comparison_desc desc = usual_desc();
-    desc.flicker = true;
-    helio_comparison *comparison = make_comparison(f, &desc);
+    helio_comparison *comparison = make_flicker_comparison(f);
     helio_comparison_pair pair = pair_of(f);
     fill(f->reference, 1, 1, 1);
     add_noise(f, 0.3, 31);
@@ -632,9 +633,7 @@ static void flicker_of_new_noise_is_its_relative_error(void **state)
 static void flicker_is_where_both_frames_are_compared(void **state)
 {
     fixture *f = *state;
-    helio_comparison_desc desc = usual_desc();
-    desc.flicker = true;
-    helio_comparison *comparison = make_comparison(f, &desc);
+    helio_comparison *comparison = make_flicker_comparison(f);
     helio_comparison_pair pair = pair_of(f);
     fill(f->reference, 1, 1, 1);
     fill(f->picture, 1, 1, 1);

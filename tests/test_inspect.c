@@ -57,14 +57,6 @@ static json_t *inspect(const char *source_and_options)
     return load_json("seen.json");
 }
 
-static json_t *member(const json_t *object, const char *key)
-{
-    json_t *value = json_object_get(object, key);
-    if (value == NULL)
-        fail_msg("no \"%s\" in %s", key, json_dumps(object, JSON_COMPACT));
-    return value;
-}
-
 static bool is_clipped(const json_t *seen)
 {
     return json_is_true(member(member(seen, "clipping"), "is_clipped"));

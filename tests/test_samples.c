@@ -57,14 +57,6 @@ static void write_sunny_map(int face)
 
 /* ---- JSON ------------------------------------------------------------------------------------- */
 
-static json_t *member(const json_t *object, const char *key)
-{
-    json_t *value = json_object_get(object, key);
-    if (value == NULL)
-        fail_msg("no \"%s\" in the JSON", key);
-    return value;
-}
-
 /* Runs samples with --json. To be given to json_decref(). */
 static json_t *run_samples(const char *options)
 {

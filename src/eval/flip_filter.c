@@ -21,8 +21,7 @@ static double gaussian(double x, double deviation)
     return exp(-0.5 * (x / deviation) * (x / deviation));
 }
 
-/* Weights before they sum to 1, whose sum is returned. All colours have the radius of the widest, as they are one
- * filter of three channels. */
+/* Weights that sum to 1. Returns what they summed to before. */
 static double fill_smooth(flip_kernel *kernel, double deviation, int radius)
 {
     double sum = 0;
@@ -34,15 +33,31 @@ static double fill_smooth(flip_kernel *kernel, double deviation, int radius)
     return sum;
 }
 
-/* Of values at -radius ... radius. */
-static void fill_signed(flip_kernel *kernel, const double *values, int radius)
+/* First derivative of a Gaussian, but for a factor. */
+static double edge_value(double x, double deviation)
+{
+    return -x * gaussian(x, deviation);
+}
+
+/* Second derivative. */
+static double point_value(double x, double deviation)
+{
+    double relative = x / deviation;
+    return (relative * relative - 1) * gaussian(x, deviation);
+}
+
+/* Weights of which the positive ones sum to 1, the negative ones to -1. */
+static void fill_signed(flip_kernel *kernel, double (*value_at)(double x, double deviation), double deviation,
+                        int radius)
 {
     double positive = 0, negative = 0;
     kernel->radius = radius;
-    for (int i = 0; i <= 2 * radius; i++)
-        *(values[i] > 0 ? &positive : &negative) += fabs(values[i]);
-    for (int i = 0; i <= 2 * radius; i++)
-        kernel->weights[i] = (float)(values[i] / (values[i] > 0 ? positive : negative));
+    for (int x = -radius; x <= radius; x++)
+        *(value_at(x, deviation) > 0 ? &positive : &negative) += fabs(value_at(x, deviation));
+    for (int x = -radius; x <= radius; x++) {
+        double value = value_at(x, deviation);
+        kernel->weights[x + radius] = (float)(value / (value > 0 ? positive : negative));
+    }
 }
 
 /* In pixels, of a Gaussian of the contrast sensitivities. */
@@ -51,6 +66,7 @@ static double deviation_of(double b, double pixels_per_degree)
     return sqrt(b / (2 * PI * PI)) * pixels_per_degree;
 }
 
+/* All have the radius of the widest, as they are one filter of three channels. */
 static void make_colours(flip_filter *filter, double pixels_per_degree)
 {
     int radius = (int)ceil(3 * deviation_of(BLUE_YELLOW_B[0], pixels_per_degree));
@@ -65,20 +81,13 @@ static void make_colours(flip_filter *filter, double pixels_per_degree)
         filter->blue_yellow_shares[i] = (float)(parts[i] / (parts[0] + parts[1]));
 }
 
-/* First and second derivative of a Gaussian. */
 static void make_features(flip_filter *filter, double pixels_per_degree)
 {
     double deviation = 0.5 * FEATURE_WIDTH * pixels_per_degree;
     int radius = (int)ceil(3 * deviation);
-    double edge[2 * FLIP_RADIUS + 1], point[2 * FLIP_RADIUS + 1];
-    for (int x = -radius; x <= radius; x++) {
-        double relative = x / deviation, value = gaussian(x, deviation);
-        edge[x + radius] = -x * value;
-        point[x + radius] = (relative * relative - 1) * value;
-    }
     fill_smooth(&filter->smooth, deviation, radius);
-    fill_signed(&filter->edge, edge, radius);
-    fill_signed(&filter->point, point, radius);
+    fill_signed(&filter->edge, edge_value, deviation, radius);
+    fill_signed(&filter->point, point_value, deviation, radius);
 }
 
 void flip_filter_make(flip_filter *filter, double pixels_per_degree)
@@ -111,9 +120,8 @@ static const float *line_of(const row_window *window, int plane, int y, int64_t 
     return picture->planes[plane] + (size_t)row * picture->width + left;
 }
 
-/* The sum of some pixels that follow each other, times the weights: lines[k] has weight k. Sums of a block stay in
- * registers. */
-static void weigh(const float *const *lines, const flip_kernel *kernel, size_t count, float *restrict out)
+/* Sums of pixels times weights: lines[k] has weight k and a pixel for each sum. Those of a block stay in registers. */
+static void weigh(const float *const lines[FLIP_TAPS], const flip_kernel *kernel, size_t count, float *restrict out)
 {
     enum { BLOCK = 16 };
     int taps = 2 * kernel->radius + 1;
@@ -135,13 +143,13 @@ static void weigh(const float *const *lines, const flip_kernel *kernel, size_t c
 static void filter_down(const row_window *window, int plane, const flip_kernel *kernel, float *out)
 {
     const flip_picture *picture = window->picture;
-    const float *lines[2 * FLIP_RADIUS + 1];
+    const float *lines[FLIP_TAPS];
     int64_t left = clamp(window->first, 0, picture->width - 1);
     int64_t right = clamp(window->first + window->count - 1, 0, picture->width - 1);
     float *inside = out + (left - window->first);
     size_t count = (size_t)(right - left + 1);
-    for (int y = -kernel->radius; y <= kernel->radius; y++)
-        lines[y + kernel->radius] = line_of(window, plane, y, left);
+    for (int tap = 0; tap < 2 * kernel->radius + 1; tap++)
+        lines[tap] = line_of(window, plane, tap - kernel->radius, left);
     weigh(lines, kernel, count, inside);
     for (float *border = out; border < inside; border++)
         *border = *inside;
@@ -152,15 +160,15 @@ static void filter_down(const row_window *window, int plane, const flip_kernel *
 /* row: [count + 2 FLIP_RADIUS] */
 static void filter_across(const float *row, const flip_kernel *kernel, uint32_t count, float *out)
 {
-    const float *lines[2 * FLIP_RADIUS + 1];
-    for (int x = -kernel->radius; x <= kernel->radius; x++)
-        lines[x + kernel->radius] = row + FLIP_RADIUS + x;
+    const float *lines[FLIP_TAPS];
+    for (int tap = 0; tap < 2 * kernel->radius + 1; tap++)
+        lines[tap] = row + FLIP_RADIUS + tap - kernel->radius;
     weigh(lines, kernel, count, out);
 }
 
 static void filter(const row_window *window, int plane, const flip_kernel *down, const flip_kernel *across, float *out)
 {
-    float row[FLIP_WINDOW];
+    float row[FLIP_WINDOW] = {0};
     filter_down(window, plane, down, row);
     filter_across(row, across, window->count - 2 * FLIP_RADIUS, out);
 }

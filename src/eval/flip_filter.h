@@ -10,12 +10,17 @@
 
 /* FLIP_RADIUS: that of the widest kernel, see flip_filter_make(). FLIP_CHUNK: pixels of a row that are filtered at
  * once, so few that all of it lies on the stack. */
-enum { FLIP_RADIUS = 28, FLIP_CHUNK = 128, FLIP_WINDOW = FLIP_CHUNK + 2 * FLIP_RADIUS };
+enum {
+    FLIP_RADIUS = 28,
+    FLIP_TAPS = 2 * FLIP_RADIUS + 1,
+    FLIP_CHUNK = 128,
+    FLIP_WINDOW = FLIP_CHUNK + 2 * FLIP_RADIUS
+};
 
 /* One direction of a kernel; those of two dimensions are products of two. */
 typedef struct flip_kernel {
     int radius;
-    float weights[2 * FLIP_RADIUS + 1];
+    float weights[FLIP_TAPS];
 } flip_kernel;
 
 typedef struct flip_filter {

@@ -93,13 +93,18 @@ static void compare_radiance(const measurement *work, size_t pixel, comparison_s
     }
 }
 
+static bool is_same_colour(const float a[3], const float b[3])
+{
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
 static void compare_shown(const measurement *work, size_t pixel, const float a[3], const float b[3],
                           comparison_sums *sums)
 {
     float *const *maps = work->comparison->maps;
     const lab_space *space = &work->comparison->lab;
     double difference = 0, difference_2000 = 0;
-    if (memcmp(a, b, 3 * sizeof a[0]) != 0) {
+    if (!is_same_colour(a, b)) {
         for (int c = 0; c < 3; c++)
             sums->shown_squares += square((double)srgb_encode(a[c]) - (double)srgb_encode(b[c]));
         if (maps[HELIO_ERROR_MAP_LAB] != NULL) {
