@@ -225,6 +225,8 @@ static int tell(const compare_job *job)
     const compare_options *compare = &job->options->compare;
     bool is_json_printed = compare->json != NULL && compare->json[0] == '-' && compare->json[1] == 0;
     int code = check_pixels(job);
+    if (code == EXIT_CODE_OK && !helio_comparison_has_lab())
+        message_warning("this build has no lcms2, so lab_mean and de2000_mean are left out");
     if (code == EXIT_CODE_OK && compare->json != NULL)
         code = comparison_report_write_json(compare->json, &job->report);
     if (code == EXIT_CODE_OK && !is_json_printed && !job->options->quiet)
@@ -237,8 +239,6 @@ static int compare_all(compare_job *job)
     int code = EXIT_CODE_OK;
     if (input_source_context(job->options, &job->warnings, &job->context) != HELIO_OK)
         return failure();
-    if (!helio_comparison_has_lab())
-        message_warning("this build has no lcms2, so lab_mean and de2000_mean are left out");
     for (size_t i = 0; i < job->report.count && code == EXIT_CODE_OK; i++)
         code = compare_frame(job, &job->report.frames[i]);
     progress_end(&job->progress);

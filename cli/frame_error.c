@@ -22,8 +22,6 @@ static int make_comparison(frame_error *error)
                                         .height = error->size[1],
                                         .without_lab = !helio_comparison_has_lab(),
                                         .without_flip = true};
-    if (desc.without_lab)
-        message_warning("this build has no lcms2, so that --reference measures relmse alone");
     return helio_comparison_create(error->context, &desc, &error->comparison) == HELIO_OK ? EXIT_CODE_OK : failure();
 }
 
@@ -54,6 +52,8 @@ int frame_error_open(frame_error *error, helio_context *context, const char *pat
     int code = make_comparison(error);
     if (code == EXIT_CODE_OK && !error->has_numbers)
         code = read_reference(error, path);
+    if (code == EXIT_CODE_OK && !helio_comparison_has_lab())
+        message_warning("this build has no lcms2, so that --reference measures relmse alone");
     return code;
 }
 
