@@ -195,7 +195,8 @@ static int compare_frame(compare_job *job, compared_frame *frame)
     progress_pass(&job->progress, true);
     if (progress_update(&job->progress, 0) || code != EXIT_CODE_OK)
         return code;
-    message_failure("stopped; nothing was written");
+    message_failure("stopped after %" PRIu64 " of %zu frames; their numbers are not told", job->progress.passed,
+                    job->report.count);
     return EXIT_CODE_SIGNAL + interrupt_signal();
 }
 

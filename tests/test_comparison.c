@@ -395,7 +395,7 @@ static void errors_grow_with_noise(void **state)
     fixture *f = *state;
     helio_comparison_info before = {0};
     helio_comparison_pair pair = pair_of(f);
-    before.psnr = INFINITY;
+    before.psnr = (double)INFINITY;
     fill_scene(f->reference);
     for (double amplitude = 0.01; amplitude < 0.2; amplitude *= 1.5) {
         add_noise(f, amplitude, 7);
