@@ -55,11 +55,12 @@ static const help_entry picture_forms[] = {
 };
 
 const help_section help_forms[] = {
-    {"SRC", source_forms, COUNT(source_forms), COMMANDS_OF_SCENES | COMMAND_CONVERT | COMMAND_INSPECT},
+    {"SRC", source_forms, COUNT(source_forms), COMMANDS_OF_SCENES | COMMAND_CONVERT | COMMAND_INSPECT | COMMAND_STUDY},
     {"PICTURE and REFERENCE", picture_forms, COUNT(picture_forms), COMMAND_COMPARE},
-    {"--layout L", layout_forms, COUNT(layout_forms), COMMANDS_OF_SCENES | COMMAND_CONVERT | COMMAND_INSPECT},
-    {"--material SPEC", material_forms, COUNT(material_forms), COMMANDS_OF_SCENES},
-    {"--camera SPEC", camera_forms, COUNT(camera_forms), COMMANDS_OF_SCENES},
+    {"--layout L", layout_forms, COUNT(layout_forms),
+     COMMANDS_OF_SCENES | COMMAND_CONVERT | COMMAND_INSPECT | COMMAND_STUDY},
+    {"--material SPEC", material_forms, COUNT(material_forms), COMMANDS_OF_SCENES | COMMAND_STUDY},
+    {"--camera SPEC", camera_forms, COUNT(camera_forms), COMMANDS_OF_SCENES | COMMAND_STUDY},
 };
 const size_t help_form_count = COUNT(help_forms);
 
@@ -94,6 +95,9 @@ static const help_entry examples[] = {
      "how far a picture is from its reference, in numbers and as a picture"},
     {"heliostat compare 'face/%04d.exr' 'truth/%04d.exr' --json flicker.json",
      "of a sequence, also how much its error flickers"},
+    {"heliostat study --strategies face,face+brdf,light+brdf --spp 4,16,64,256 --envs 'probes/*.hdr'",
+     "which strategy is best at equal samples and at equal time: a page of curves, pictures and tables"},
+    {"heliostat study --study study.json --resume --out night", "go on with a study whose options are in a file"},
     {"heliostat bench --stages tables,frame --json bench.json", "how fast this machine is"},
 };
 const help_section help_examples = {"Examples", examples, COUNT(examples), COMMAND_ALL};

@@ -235,6 +235,8 @@ static int take_word(cli_options *options, unsigned command, const char *command
 int options_parse(cli_options *options, unsigned command, const char *command_name, int count, char **arguments)
 {
     set_defaults(options);
+    options->word_count = count;
+    options->words = arguments;
     for (int i = 0; i < count; i++) {
         int code = arguments[i][0] == '-' ? take_option(options, command, command_name, count, arguments, &i)
                                           : take_word(options, command, command_name, arguments[i]);

@@ -18,8 +18,9 @@ enum {
     COMMAND_SAMPLES = 1 << 6,
     COMMANDS_OF_SCENES = COMMAND_RENDER | COMMAND_SAMPLES, /* which light a mesh */
     COMMAND_COMPARE = 1 << 7,
+    COMMAND_STUDY = 1 << 9,
     COMMAND_ALL = COMMANDS_OF_SCENES | COMMAND_INFO | COMMAND_HELP | COMMAND_BENCH | COMMAND_CONVERT | COMMAND_INSPECT |
-                  COMMAND_COMPARE
+                  COMMAND_COMPARE | COMMAND_STUDY
 };
 
 /* Lists, separated by commas, that bench walks through; some are single values in other commands. */
@@ -63,6 +64,16 @@ typedef struct compare_options {
     double pixels_per_degree;
 } compare_options;
 
+/* What study alone takes. Lists are separated by commas, or by semicolons where there is one. */
+typedef struct study_options {
+    const char *file, *strategies, *spp, *envs, *materials, *visibility, *shown_spp, *out;
+    uint32_t repeat, reference_spp, sequence, pictures;
+    uint32_t picture_size[2]; /* width, height */
+    double turn;                                                   /* degrees */
+    double exposure;                                               /* stops; NaN means auto */
+    bool resume;
+} study_options;
+
 /* What the command line says. A pointer that is NULL means that the option was not given and has no fixed default. */
 typedef struct cli_options {
     const char *env, *layout;
@@ -98,6 +109,7 @@ typedef struct cli_options {
     inspect_options inspect;
     samples_options samples;
     compare_options compare;
+    study_options study;
 
     const char *backend;
     uint32_t threads; /* 0: one per logical core */
@@ -105,6 +117,9 @@ typedef struct cli_options {
 
     bool help, man;
     const char *topic; /* the command that help is about, or NULL */
+
+    int word_count; /* the words that all this was read from, without the command's name */
+    char **words;
 } cli_options;
 
 typedef enum option_kind {
@@ -129,6 +144,7 @@ typedef enum option_group {
     GROUP_INSPECT,
     GROUP_SAMPLES,
     GROUP_COMPARE,
+    GROUP_STUDY,
     GROUP_BENCH,
     GROUP_PROGRAM,
     GROUP_COUNT

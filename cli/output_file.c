@@ -109,3 +109,14 @@ FILE *output_file_open(const char *path, char *temporary, size_t size)
     int descriptor = open(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     return descriptor < 0 ? NULL : fdopen(descriptor, "w");
 }
+
+int output_file_finish(FILE *stream, const char *temporary, const char *path)
+{
+    bool good = !ferror(stream);
+    good = fclose(stream) == 0 && good;
+    if (good && rename(temporary, path) == 0)
+        return EXIT_CODE_OK;
+    int code = message_failure("%s cannot be written: %s", path, strerror(errno));
+    unlink(temporary);
+    return code;
+}

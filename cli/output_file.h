@@ -29,4 +29,9 @@ const char *output_file_last_part(const char *path);
  * if that cannot be. */
 FILE *output_file_open(const char *path, char *temporary, size_t size);
 
+/* Closes it and gives it its name. Returns an exit code; after a failure, of which one sentence tells, the file is
+ * gone.
+ */
+int output_file_finish(FILE *stream, const char *temporary, const char *path);
+
 #endif

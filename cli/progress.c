@@ -67,7 +67,7 @@ static void join(const progress_line *line, double done, char text[LINE_SIZE])
 
 static void format_picture(const progress_bar *progress, double elapsed, double done, char text[LINE_SIZE])
 {
-    progress_line line;
+    progress_line line = {.speed = ""};
     char past[16], left[16] = "?", rate[32];
     format_time(elapsed, past);
     format_rate(done * progress->pixels / elapsed * 1e3, rate);
@@ -75,7 +75,8 @@ static void format_picture(const progress_bar *progress, double elapsed, double 
         format_time(elapsed / done - elapsed, left);
     snprintf(line.head, sizeof line.head, "rendering %.0f %%", floor(done * 100));
     snprintf(line.left, sizeof line.left, " %s left", left);
-    snprintf(line.speed, sizeof line.speed, ", %s", rate);
+    if (progress->pixels > 0)
+        snprintf(line.speed, sizeof line.speed, ", %s", rate);
     snprintf(line.past, sizeof line.past, ", %s elapsed", past);
     join(&line, done, text);
 }

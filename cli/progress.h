@@ -9,7 +9,7 @@
 typedef struct progress_bar {
     bool visible;
     double started, drawn; /* milliseconds */
-    double pixels;         /* of one frame, for the rate of a single one */
+    double pixels;         /* of one frame, for the rate of a single one; 0: none is shown */
     uint64_t total;        /* frames; 0 where nobody knows */
     uint64_t passed;       /* frames that are behind us */
     uint64_t rendered;     /* how many of these took time */

@@ -20,19 +20,23 @@ set(PROGRAM_SOURCES
     cli/help.c cli/help_texts.c cli/interrupt.c cli/json_file.c cli/list.c
     cli/machine.c cli/main.c cli/manual.c cli/message.c cli/number.c cli/option_table.c cli/options.c cli/output_file.c
     cli/progress.c cli/render_plan.c cli/samples_gather.c cli/samples_json.c cli/samples_pixel.c cli/samples_plan.c
-    cli/samples_words.c cli/stats.c cli/suggestion.c)
+    cli/samples_words.c cli/stats.c cli/suggestion.c
+    cli/canvas_svg.c cli/chart.c cli/command_study.c cli/data_uri.c cli/digest.c cli/false_colour.c cli/study_charts.c
+    cli/study_csv.c cli/study_file.c cli/study_job.c cli/study_light.c cli/study_list.c cli/study_measure.c
+    cli/study_page.c cli/study_picture.c cli/study_plan.c cli/study_progress.c cli/study_record.c cli/study_settings.c
+    cli/study_strategy.c cli/study_summary.c cli/study_truth.c)
 
 if(HELIO_WITH_CAIRO)
     pkg_check_modules(CAIRO QUIET IMPORTED_TARGET cairo)
     if(NOT CAIRO_FOUND)
         message(FATAL_ERROR "cairo was not found: install libcairo2-dev, or build without it by -DHELIO_WITH_CAIRO=OFF.")
     endif()
-    list(APPEND PROGRAM_SOURCES cli/cube_cross.c cli/error_figure.c cli/false_colour.c cli/figure.c cli/figure_text.c cli/inspect_chart.c cli/inspect_drawing.c cli/inspect_panel.c
+    list(APPEND PROGRAM_SOURCES cli/cube_cross.c cli/error_figure.c cli/figure.c cli/figure_text.c cli/inspect_chart.c cli/inspect_drawing.c cli/inspect_panel.c
          cli/inspect_picture.c cli/samples_bars.c cli/samples_figure.c cli/samples_map.c cli/samples_marks.c
-         cli/samples_panel.c cli/samples_sheet.c)
+         cli/samples_panel.c cli/samples_sheet.c cli/canvas_cairo.c cli/study_charts_pdf.c cli/study_sheets.c)
     list(APPEND FEATURE_DEFINITIONS HELIO_WITH_CAIRO=1)
 else()
-    list(APPEND PROGRAM_SOURCES cli/error_no_figure.c cli/inspect_no_picture.c cli/samples_no_picture.c)
+    list(APPEND PROGRAM_SOURCES cli/error_no_figure.c cli/inspect_no_picture.c cli/samples_no_picture.c cli/study_no_charts.c)
 endif()
 
 # The arithmetic peak that bench compares with, for each instruction set as the kernels.

@@ -1,0 +1,251 @@
+/* SPDX-License-Identifier: MIT */
+#include "study_measure.h"
+
+#include "machine.h"
+#include "study_seed.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { MOST_REPEATS = 101, PARTS = 6 };
+
+/* ---- what is rendered ---------------------------------------------------------------------- */
+
+helio_renderer_desc study_renderer_desc(const study_job *job)
+{
+    const cli_options *options = job->plan->options;
+    return (helio_renderer_desc){
+        .environment = job->environment,
+        .scene = job->scene,
+        .width = options->size[0],
+        .height = options->size[1],
+        .aa = options->aa,
+        .no_visibility = options->study.visibility[0] == 'n',
+    };
+}
+
+study_turn study_turn_of(const study_plan *plan)
+{
+    const cli_options *options = plan->options;
+    return (study_turn){options->rotate, options->study.turn, options->flip, (float)options->intensity};
+}
+
+uint32_t study_seed_of(const study_job *job, uint32_t frame, uint32_t repetition)
+{
+    const cli_options *options = job->plan->options;
+    uint32_t index = options->seed_mode[1] == 'r' ? MOST_REPEATS + frame : 0;
+    return study_seed(options->seed, index + repetition);
+}
+
+static uint32_t sequence_length(const study_job *job, const study_point *point)
+{
+    return job->plan->is_shown[point->spp] && job->light.count > 1 ? job->light.count : 0;
+}
+
+double study_measure_work(const study_plan *plan, const study_point *point)
+{
+    const study_options *study = &plan->options->study;
+    uint32_t frames = study->repeat + (plan->is_shown[point->spp] && study->sequence > 1 ? study->sequence : 0);
+    return frames * study_progress_frame(plan->strategies[point->strategy].strategy, plan->spp[point->spp]);
+}
+
+/* ---- one frame ----------------------------------------------------------------------------- */
+
+typedef struct measured_frame {
+    double parts[PARTS]; /* ms: all, cube, tables, pools, camera rays, shading */
+    helio_frame_info info;
+} measured_frame;
+
+/* All that a frame takes once its map is in memory. */
+static helio_status render_frame(study_job *job, helio_renderer *renderer, uint32_t index, uint32_t seed,
+                                 measured_frame *frame)
+{
+    const study_turn turn = study_turn_of(job->plan);
+    const helio_frame_desc desc = {.camera = job->camera,
+                                   .seed = seed,
+                                   .progress = study_progress_update,
+                                   .user = &job->progress,
+                                   .retrace = true};
+    frame->info = (helio_frame_info){0};
+    double start = machine_milliseconds();
+    helio_status status = study_light_apply(&job->light, index, &turn, job->environment, NULL);
+    double lit = machine_milliseconds();
+    if (status == HELIO_OK)
+        status = helio_renderer_render(renderer, &desc, &frame->info);
+    double parts[PARTS] = {machine_milliseconds() - start, lit - start,
+                           frame->info.tables_ms,          frame->info.pools_ms,
+                           frame->info.primary_ms,         frame->info.shade_ms};
+    for (int i = 0; i < PARTS; i++)
+        frame->parts[i] = parts[i];
+    return status;
+}
+
+static helio_comparison_pair pair_of(const study_job *job, const helio_renderer *renderer, uint32_t frame)
+{
+    return (helio_comparison_pair){.picture = helio_renderer_picture(renderer).rgba,
+                                   .picture_channels = 4,
+                                   .reference = job->truths[frame].rgb,
+                                   .mask = job->truths[frame].object,
+                                   .exposure = job->exposure,
+                                   .tonemap = job->plan->tonemap};
+}
+
+/* ---- repetitions --------------------------------------------------------------------------- */
+
+typedef struct repetitions {
+    measured_frame frames[MOST_REPEATS];
+    uint32_t count;
+} repetitions;
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The value at a part, 0..1, of the sorted times. */
+static double quantile(const repetitions *all, int part, double position)
+{
+    double values[MOST_REPEATS] = {0};
+    for (uint32_t i = 0; i < all->count; i++)
+        values[i] = all->frames[i].parts[part];
+    qsort(values, all->count, sizeof values[0], compare_doubles);
+    double place = position * (all->count - 1);
+    uint32_t below = (uint32_t)place, above = below + 1 < all->count ? below + 1 : below;
+    return values[below] + (place - below) * (values[above] - values[below]);
+}
+
+static void note_times(const repetitions *all, study_cell *cell)
+{
+    cell->total_ms = quantile(all, 0, 0.5);
+    cell->low_ms = quantile(all, 0, 0);
+    cell->high_ms = quantile(all, 0, 1);
+    cell->cube_ms = quantile(all, 1, 0.5);
+    cell->tables_ms = quantile(all, 2, 0.5);
+    cell->pools_ms = quantile(all, 3, 0.5);
+    cell->primary_ms = quantile(all, 4, 0.5);
+    cell->shade_ms = quantile(all, 5, 0.5);
+    const helio_frame_info *info = &all->frames[0].info;
+    cell->samples = (double)info->samples;
+    cell->useful_share = info->samples > 0 ? (double)info->samples_useful / (double)info->samples : (double)NAN;
+    cell->rays = (double)info->rays;
+    cell->passes = info->passes;
+}
+
+static helio_status write_pictures(study_job *job, const study_point *point, const helio_renderer *renderer)
+{
+    double range;
+    char path[STUDY_PATH];
+    const float *errors = helio_comparison_map(job->full, study_job_error_map(&range));
+    uint32_t width = job->plan->options->size[0];
+    if (!job->plan->is_shown[point->spp] || !study_job_has_pictures() ||
+        !study_plan_shows(job->plan, point->environment, point->material))
+        return HELIO_OK;
+    study_job_picture_path(job->plan, point, "picture", path);
+    helio_status status = study_picture_write(job->context, path, &job->window, helio_renderer_picture(renderer).rgba,
+                                              width, 4, job->exposure, job->plan->tonemap);
+    study_job_picture_path(job->plan, point, "error", path);
+    return status == HELIO_OK ? study_picture_write_errors(job->context, path, &job->window, errors, width, range)
+                              : status;
+}
+
+/* What takes long to compare by, and what is shown, is of the first repetition. */
+static helio_status note_view(study_job *job, const study_point *point, const helio_renderer *renderer,
+                              study_cell *cell)
+{
+    helio_comparison_info info;
+    const helio_comparison_pair pair = pair_of(job, renderer, study_plan_still(job->light.count));
+    helio_status status = helio_comparison_measure(job->full, &pair, &info);
+    if (status != HELIO_OK)
+        return status;
+    cell->lab_mean = info.lab_mean;
+    cell->de2000_mean = info.de2000_mean;
+    cell->psnr = info.psnr;
+    cell->flip = info.flip;
+    return write_pictures(job, point, renderer);
+}
+
+static helio_status repeat(study_job *job, const study_point *point, helio_renderer *renderer, study_cell *cell,
+                           bool *is_whole)
+{
+    repetitions all = {.count = 0};
+    helio_comparison_info info;
+    double relmse = 0, squares = 0,
+           work = study_progress_frame(job->plan->strategies[point->strategy].strategy, job->plan->spp[point->spp]);
+    uint32_t still = study_plan_still(job->light.count), count = job->plan->options->study.repeat;
+    while (all.count < count) {
+        study_progress_begin(&job->progress, work);
+        measured_frame *frame = &all.frames[all.count];
+        helio_status status = render_frame(job, renderer, still, study_seed_of(job, still, all.count), frame);
+        *is_whole = !frame->info.stopped;
+        if (status != HELIO_OK || frame->info.stopped)
+            return status;
+        const helio_comparison_pair pair = pair_of(job, renderer, still);
+        helio_comparison_restart(job->plain);
+        status = helio_comparison_measure(job->plain, &pair, &info);
+        if (status == HELIO_OK && all.count == 0)
+            status = note_view(job, point, renderer, cell);
+        if (status != HELIO_OK)
+            return status;
+        relmse += info.relmse;
+        squares += info.rmse * info.rmse;
+        all.count++;
+        study_progress_end(&job->progress);
+    }
+    cell->relmse = relmse / count;
+    cell->rmse = sqrt(squares / count);
+    note_times(&all, cell);
+    return HELIO_OK;
+}
+
+/* ---- flicker ------------------------------------------------------------------------------- */
+
+static helio_status measure_flicker(study_job *job, const study_point *point, helio_renderer *renderer,
+                                    study_cell *cell, bool *is_whole)
+{
+    measured_frame frame;
+    helio_comparison_info info;
+    uint32_t count = sequence_length(job, point);
+    double flicker = 0, squares = 0;
+    helio_comparison_restart(job->plain);
+    for (uint32_t i = 0; i < count; i++) {
+        study_progress_begin(&job->progress, study_progress_frame(job->plan->strategies[point->strategy].strategy,
+                                                                  job->plan->spp[point->spp]));
+        helio_status status = render_frame(job, renderer, i, study_seed_of(job, i, 0), &frame);
+        *is_whole = !frame.info.stopped;
+        if (status != HELIO_OK || frame.info.stopped)
+            return status;
+        const helio_comparison_pair pair = pair_of(job, renderer, i);
+        status = helio_comparison_measure(job->plain, &pair, &info);
+        if (status != HELIO_OK)
+            return status;
+        flicker += i > 0 ? info.flicker : 0;
+        squares += i > 0 ? info.flicker_rmse * info.flicker_rmse : 0;
+        study_progress_end(&job->progress);
+    }
+    cell->flicker = count > 1 ? flicker / (count - 1) : (double)NAN;
+    cell->flicker_rmse = count > 1 ? sqrt(squares / (count - 1)) : (double)NAN;
+    return HELIO_OK;
+}
+
+helio_status study_measure(study_job *job, const study_point *point, study_cell *cell, bool *is_whole)
+{
+    const study_strategy *strategy = &job->plan->strategies[point->strategy];
+    helio_renderer *renderer;
+    helio_renderer_desc desc = study_renderer_desc(job);
+    desc.spp = job->plan->spp[point->spp];
+    desc.strategy = strategy->strategy;
+    desc.weighting = strategy->weighting;
+    desc.brdf_share = strategy->brdf_share;
+    desc.no_beta = strategy->no_beta;
+    desc.no_decorrelation = strategy->no_decorrelation;
+    *cell = (study_cell){.reference_rmse = job->truths[study_plan_still(job->light.count)].rmse,
+                         .exposure = (double)job->exposure};
+    helio_status status = helio_renderer_create(job->context, &desc, &renderer);
+    if (status == HELIO_OK)
+        status = repeat(job, point, renderer, cell, is_whole);
+    if (status == HELIO_OK && *is_whole)
+        status = measure_flicker(job, point, renderer, cell, is_whole);
+    helio_renderer_destroy(renderer);
+    return status;
+}
