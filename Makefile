@@ -4,6 +4,7 @@ BUILD = build
 PREFIX = /usr/local
 OUT = heliostat-day.mp4
 SHEET = heliostat-day.png
+FIGURES = figures
 DEPENDENCIES = yes
 SECONDS = 60
 TARGET =
@@ -19,7 +20,7 @@ install_dependencies = @:
 endif
 
 .NOTPARALLEL:
-.PHONY: all demo bench test test-long san tsan fuzz core format check-format lint install clean help
+.PHONY: all demo figures bench test test-long san tsan fuzz core format check-format lint install clean help
 .PHONY: dependencies-build dependencies-test dependencies-ci build-with-tests
 
 all: dependencies-build $(BUILD)/build.ninja
@@ -35,6 +36,24 @@ demo: all
 	@set -e; out='$(OUT)'; $(demo_day) --out "$$out" || { code=$$?; [ $$code = 2 ] || exit $$code; \
 	    out=heliostat-day/; $(demo_day) --out "$$out"; }; \
 	echo "The day is in $$(realpath "$$out"), a dozen of its frames in $(abspath $(SHEET))"
+
+# The three figures of the paper's supplement, as docs/paper.md shows them: some minutes on two cores. What is finished
+# already is not done again.
+phong = phong:kd=0.5,ks=0.5,n=120
+figure_study = $(BUILD)/heliostat study --resume --picture-size 960x720
+
+figures: all
+	@mkdir -p $(FIGURES)
+	@echo 'Figure 1: with and without beta'
+	@$(figure_study) --out $(FIGURES)/1 --envs sky:time=17:00 --materials '$(phong);diffuse:0.8' --spp 16,64 --show-spp 16 \
+	    --strategies face:decorrelate=none,face:no-beta:decorrelate=none,face,face:no-beta
+	@echo 'Figure 2: 5 to 60 samples'
+	@$(figure_study) --out $(FIGURES)/2 --materials '$(phong)' --spp 5,10,20,40,60 --show-spp all \
+	    --strategies face+brdf,face --reference-spp 4096
+	@echo 'Figure 3: a pixel at six times of day'
+	@$(BUILD)/heliostat samples --env sky:day --camera orbit:azimuth=-40,elevation=10,distance=0.95 --visibility none \
+	    --material '$(phong)' --pixel 400,480 --contact-sheet $(FIGURES)/3.png
+	@echo "The figures are $(FIGURES)/1/sheets, $(FIGURES)/2/sheets and $(FIGURES)/3.png"
 
 # A minute or so; what it says of a busy machine is of little use.
 bench: all
@@ -88,6 +107,7 @@ help:
 	@echo 'make                        builds $(BUILD)/heliostat'
 	@echo 'make demo [OUT=VIDEO] [SHEET=PICTURE]'
 	@echo '                            builds, lights a dragon from sunrise to sunset and says where the video is'
+	@echo 'make figures [FIGURES=DIR]  builds, and remakes the figures of the paper'
 	@echo 'make bench                  builds and measures every stage; figures also go to $(BUILD)/bench.json'
 	@echo 'make test                   builds and runs the tests; make test-long: those that take longer'
 	@echo 'make san, tsan              the same tests with address and undefined, thread sanitizers'
