@@ -69,8 +69,8 @@ typedef struct study_options {
     const char *file, *strategies, *spp, *envs, *materials, *visibility, *shown_spp, *out;
     uint32_t repeat, reference_spp, sequence, pictures;
     uint32_t picture_size[2]; /* width, height */
-    double turn;                                                   /* degrees */
-    double exposure;                                               /* stops; NaN means auto */
+    double turn;              /* degrees */
+    double exposure;          /* stops; NaN means auto */
     bool resume;
 } study_options;
 

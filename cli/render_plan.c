@@ -1,16 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #include "render_plan.h"
 
-#include "asset.h"
 #include "input_source.h"
+#include "mesh_path.h"
 #include "message.h"
 #include "output_plan.h"
 
 #include <math.h>
 #include <string.h>
 #include <unistd.h>
-
-static const char SHIPPED_MESH[] = "dragon.ply.gz";
 
 enum { USUAL_DAY_FRAMES = 240 };
 
@@ -76,23 +74,6 @@ static int check_program(const cli_options *options)
     return EXIT_CODE_OK;
 }
 
-static int choose_mesh(render_plan *plan)
-{
-    const char *mesh = plan->options->mesh;
-    if (mesh == NULL) {
-        if (asset_find(SHIPPED_MESH, plan->mesh, sizeof plan->mesh))
-            return EXIT_CODE_OK;
-        return message_failure("the dragon %s, which comes with the sources only, was not found; give a mesh by "
-                               "--mesh FILE",
-                               SHIPPED_MESH);
-    }
-    if (strlen(mesh) >= sizeof plan->mesh)
-        return message_usage("--mesh takes a path of less than %zu bytes, not one of %zu", sizeof plan->mesh,
-                             strlen(mesh));
-    strcpy(plan->mesh, mesh);
-    return EXIT_CODE_OK;
-}
-
 /* Options that are fine but change nothing here: people should not look for their effect. */
 static void warn_of_idle_sampling(const render_plan *plan)
 {
@@ -135,7 +116,7 @@ static int begin(render_plan *plan, const cli_options *options)
 static int choose_inputs(render_plan *plan, bool may_be_sequence)
 {
     int code = choose_light(plan, may_be_sequence);
-    return code == EXIT_CODE_OK ? choose_mesh(plan) : code;
+    return code == EXIT_CODE_OK ? mesh_path_choose(plan->options->mesh, plan->mesh) : code;
 }
 
 int render_plan_make(render_plan *plan, const cli_options *options)

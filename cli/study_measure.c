@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include "study_measure.h"
 
+#include "bench_series.h"
 #include "machine.h"
 #include "study_seed.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-enum { MOST_REPEATS = 101, PARTS = 6 };
+enum { PARTS = 6 };
 
 /* ---- what is rendered ---------------------------------------------------------------------- */
 
@@ -33,7 +33,7 @@ study_turn study_turn_of(const study_plan *plan)
 uint32_t study_seed_of(const study_job *job, uint32_t frame, uint32_t repetition)
 {
     const cli_options *options = job->plan->options;
-    uint32_t index = options->seed_mode[1] == 'r' ? MOST_REPEATS + frame : 0;
+    uint32_t index = options->seed_mode[1] == 'r' ? BENCH_REPEATS + frame : 0;
     return study_seed(options->seed, index + repetition);
 }
 
@@ -55,6 +55,13 @@ typedef struct measured_frame {
     double parts[PARTS]; /* ms: all, cube, tables, pools, camera rays, shading */
     helio_frame_info info;
 } measured_frame;
+
+static void begin_frame(study_job *job, const study_point *point)
+{
+    const study_plan *plan = job->plan;
+    study_progress_begin(&job->progress,
+                         study_progress_frame(plan->strategies[point->strategy].strategy, plan->spp[point->spp]));
+}
 
 /* All that a frame takes once its map is in memory. */
 static helio_status render_frame(study_job *job, helio_renderer *renderer, uint32_t index, uint32_t seed,
@@ -93,39 +100,22 @@ static helio_comparison_pair pair_of(const study_job *job, const helio_renderer 
 /* ---- repetitions --------------------------------------------------------------------------- */
 
 typedef struct repetitions {
-    measured_frame frames[MOST_REPEATS];
-    uint32_t count;
+    bench_series parts[PARTS]; /* as those of measured_frame */
+    helio_frame_info info;     /* of the last */
 } repetitions;
-
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* The value at a part, 0..1, of the sorted times. */
-static double quantile(const repetitions *all, int part, double position)
-{
-    double values[MOST_REPEATS] = {0};
-    for (uint32_t i = 0; i < all->count; i++)
-        values[i] = all->frames[i].parts[part];
-    qsort(values, all->count, sizeof values[0], compare_doubles);
-    double place = position * (all->count - 1);
-    uint32_t below = (uint32_t)place, above = below + 1 < all->count ? below + 1 : below;
-    return values[below] + (place - below) * (values[above] - values[below]);
-}
 
 static void note_times(const repetitions *all, study_cell *cell)
 {
-    cell->total_ms = quantile(all, 0, 0.5);
-    cell->low_ms = quantile(all, 0, 0);
-    cell->high_ms = quantile(all, 0, 1);
-    cell->cube_ms = quantile(all, 1, 0.5);
-    cell->tables_ms = quantile(all, 2, 0.5);
-    cell->pools_ms = quantile(all, 3, 0.5);
-    cell->primary_ms = quantile(all, 4, 0.5);
-    cell->shade_ms = quantile(all, 5, 0.5);
-    const helio_frame_info *info = &all->frames[0].info;
+    bench_spread total = bench_series_spread(&all->parts[0]);
+    cell->total_ms = total.median;
+    cell->low_ms = total.low;
+    cell->high_ms = total.high;
+    cell->cube_ms = bench_series_spread(&all->parts[1]).median;
+    cell->tables_ms = bench_series_spread(&all->parts[2]).median;
+    cell->pools_ms = bench_series_spread(&all->parts[3]).median;
+    cell->primary_ms = bench_series_spread(&all->parts[4]).median;
+    cell->shade_ms = bench_series_spread(&all->parts[5]).median;
+    const helio_frame_info *info = &all->info;
     cell->samples = (double)info->samples;
     cell->useful_share = info->samples > 0 ? (double)info->samples_useful / (double)info->samples : (double)NAN;
     cell->rays = (double)info->rays;
@@ -168,28 +158,29 @@ static helio_status note_view(study_job *job, const study_point *point, const he
 static helio_status repeat(study_job *job, const study_point *point, helio_renderer *renderer, study_cell *cell,
                            bool *is_whole)
 {
-    repetitions all = {.count = 0};
-    helio_comparison_info info;
-    double relmse = 0, squares = 0,
-           work = study_progress_frame(job->plan->strategies[point->strategy].strategy, job->plan->spp[point->spp]);
+    repetitions all = {0};
+    double relmse = 0, squares = 0;
     uint32_t still = study_plan_still(job->light.count), count = job->plan->options->study.repeat;
-    while (all.count < count) {
-        study_progress_begin(&job->progress, work);
-        measured_frame *frame = &all.frames[all.count];
-        helio_status status = render_frame(job, renderer, still, study_seed_of(job, still, all.count), frame);
-        *is_whole = !frame->info.stopped;
-        if (status != HELIO_OK || frame->info.stopped)
+    for (uint32_t i = 0; i < count; i++) {
+        measured_frame frame;
+        helio_comparison_info info;
+        begin_frame(job, point);
+        helio_status status = render_frame(job, renderer, still, study_seed_of(job, still, i), &frame);
+        *is_whole = !frame.info.stopped;
+        if (status != HELIO_OK || frame.info.stopped)
             return status;
         const helio_comparison_pair pair = pair_of(job, renderer, still);
         helio_comparison_restart(job->plain);
         status = helio_comparison_measure(job->plain, &pair, &info);
-        if (status == HELIO_OK && all.count == 0)
+        if (status == HELIO_OK && i == 0)
             status = note_view(job, point, renderer, cell);
         if (status != HELIO_OK)
             return status;
+        for (int part = 0; part < PARTS; part++)
+            bench_series_add(&all.parts[part], frame.parts[part]);
+        all.info = frame.info;
         relmse += info.relmse;
         squares += info.rmse * info.rmse;
-        all.count++;
         study_progress_end(&job->progress);
     }
     cell->relmse = relmse / count;
@@ -209,8 +200,7 @@ static helio_status measure_flicker(study_job *job, const study_point *point, he
     double flicker = 0, squares = 0;
     helio_comparison_restart(job->plain);
     for (uint32_t i = 0; i < count; i++) {
-        study_progress_begin(&job->progress, study_progress_frame(job->plan->strategies[point->strategy].strategy,
-                                                                  job->plan->spp[point->spp]));
+        begin_frame(job, point);
         helio_status status = render_frame(job, renderer, i, study_seed_of(job, i, 0), &frame);
         *is_whole = !frame.info.stopped;
         if (status != HELIO_OK || frame.info.stopped)

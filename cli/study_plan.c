@@ -3,6 +3,7 @@
 
 #include "asset.h"
 #include "input_source.h"
+#include "mesh_path.h"
 #include "message.h"
 #include "number.h"
 #include "output_file.h"
@@ -14,7 +15,6 @@
 #include <string.h>
 #include <unistd.h>
 
-static const char SHIPPED_MESH[] = "dragon.ply.gz";
 static const char SHIPPED_MAP[] = "sunrise.hdr";
 
 static bool is(const char *value, const char *word)
@@ -233,17 +233,7 @@ static int check_words(const study_plan *plan)
 
 static int choose_mesh(study_plan *plan)
 {
-    const char *mesh = plan->options->mesh;
-    if (mesh != NULL && strlen(mesh) >= sizeof plan->mesh)
-        return message_usage("--mesh takes a path of less than %zu bytes, not one of %zu", sizeof plan->mesh,
-                             strlen(mesh));
-    if (mesh != NULL)
-        strcpy(plan->mesh, mesh);
-    else if (!asset_find(SHIPPED_MESH, plan->mesh, sizeof plan->mesh))
-        return message_failure("the dragon %s, which comes with the sources only, was not found; give a mesh by "
-                               "--mesh FILE",
-                               SHIPPED_MESH);
-    return EXIT_CODE_OK;
+    return mesh_path_choose(plan->options->mesh, plan->mesh);
 }
 
 int study_plan_make(study_plan *plan, const cli_options *options)

@@ -23,7 +23,7 @@ typedef struct study_environment {
 
 typedef struct study_plan {
     const cli_options *options;
-    char mesh[STUDY_NAME];
+    char mesh[STUDY_NAME];    /* path */
     helio_source_desc source; /* how environments are read */
     helio_ground ground;
     helio_tonemap tonemap;

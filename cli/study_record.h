@@ -13,7 +13,7 @@ typedef struct study_cell {
     double relmse, rmse;                                       /* means over the repetitions; rmse of squares */
     double lab_mean, de2000_mean, psnr, flip;                  /* of the first one */
     double flicker, flicker_rmse;                              /* means over the sequence */
-    double total_ms, low_ms, high_ms;                          /* of the whole frame: median, smallest and largest */
+    double total_ms, low_ms, high_ms;                          /* of the whole frame: median and quartiles */
     double cube_ms, tables_ms, pools_ms, primary_ms, shade_ms; /* medians of its parts */
     double samples, useful_share, rays, passes;
     double reference_rmse; /* standard error of the reference, as an RMSE */

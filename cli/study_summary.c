@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include "study_summary.h"
 
+#include "bench_series.h"
 #include "json_file.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* ---- curves -------------------------------------------------------------------------------- */
 
@@ -46,19 +46,6 @@ double study_curve_slope(const study_curve *curve)
     return n < 2 ? (double)NAN : (n * sum_xy - sum_x * sum_y) / (n * sum_xx - sum_x * sum_x);
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* values: [count], count > 0; sorts them. */
-static double median(double *values, uint32_t count)
-{
-    qsort(values, count, sizeof values[0], compare_doubles);
-    return (values[(count - 1) / 2] + values[count / 2]) / 2;
-}
-
 /* Of (fixed + each x spp) / ms = 1 at all points, for the time of samples. False where that is no rising line above 0.
  */
 static bool fit_pace(const study_curve *curve, study_pace *pace)
@@ -79,25 +66,27 @@ static bool fit_pace(const study_curve *curve, study_pace *pace)
 
 bool study_curve_pace(const study_curve *curve, study_pace *pace)
 {
-    double each[STUDY_LIST];
+    bench_series each = {0};
     for (uint32_t i = 0; i < curve->count; i++)
-        each[i] = curve->sampling_ms[i] / curve->spp[i];
+        bench_series_add(&each, curve->sampling_ms[i] / curve->spp[i]);
     if (curve->count > 0 && !fit_pace(curve, pace))
-        *pace = (study_pace){0, median(each, curve->count)};
+        *pace = (study_pace){0, bench_series_spread(&each).median};
     return curve->count > 0 && pace->each > 0;
 }
 
-/* What a frame takes beside pools and shading: the median over all strategies. */
+/* What a frame takes beside pools and shading: the median over all strategies of their medians. */
 static double find_rest(const study_record *record, uint32_t environment, uint32_t material)
 {
-    double rest[STUDY_LIST * STUDY_LIST];
-    uint32_t count = 0;
+    bench_series rest = {0};
     for (uint32_t s = 0; s < record->plan->strategy_count; s++) {
         const study_curve curve = study_curve_make(record, environment, material, s);
+        bench_series own = {0};
         for (uint32_t i = 0; i < curve.count; i++)
-            rest[count++] = curve.ms[i] - curve.sampling_ms[i];
+            bench_series_add(&own, curve.ms[i] - curve.sampling_ms[i]);
+        if (curve.count > 0)
+            bench_series_add(&rest, bench_series_spread(&own).median);
     }
-    return count > 0 ? median(rest, count) : (double)NAN;
+    return rest.count > 0 ? bench_series_spread(&rest).median : (double)NAN;
 }
 
 /* Straight in log-log through a point, or through two. */

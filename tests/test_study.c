@@ -226,11 +226,11 @@ static void times_count_everything(void **state)
             assert_true(number_of(cell, names[k]) > 0);
             parts += number_of(cell, names[k]);
         }
-        /* Medians of three need not be of the same frame, so that their sum may be above the median of the whole; but
-         * never above the slowest, of which each part is at most. */
+        /* Medians of single parts need not be of the same frame, so that their sum differs from the median of the
+         * whole; but a part that is left out, or counted twice, would show. */
         assert_true(number_of(cell, "high_ms") >= number_of(cell, "total_ms"));
         assert_true(number_of(cell, "low_ms") <= number_of(cell, "total_ms"));
-        assert_true(parts < 5 * number_of(cell, "high_ms") && parts > 0.3 * number_of(cell, "low_ms"));
+        assert_true(parts < 3 * number_of(cell, "high_ms") && parts > 0.3 * number_of(cell, "low_ms"));
     }
     assert_true(number_of(cell_at(study, 0), "passes") == 1);
     assert_true(number_of(cell_at(study, 1), "passes") == 4); /* 512 samples, 128 from each drawing of the pools */
