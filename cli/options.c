@@ -192,6 +192,8 @@ static int take_option(cli_options *options, unsigned command, const char *comma
             return bad_value(option, value);
     } else if (value == NULL) {
         const char *next = *index + 1 < count ? arguments[*index + 1] : NULL;
+        if (option->bare != NULL && (next == NULL || strncmp(next, "--", 2) == 0))
+            return store_value(option, option->bare, options) ? EXIT_CODE_OK : bad_value(option, option->bare);
         if (next == NULL)
             return message_usage("--%s needs a value: --%s %s", option->name, option->name, option->argument);
         if (strncmp(next, "--", 2) == 0)

@@ -154,6 +154,7 @@ typedef struct cli_option {
     const char *name;     /* without the two dashes */
     char letter;          /* short form, or 0 */
     const char *argument; /* what the value is called in the help; NULL for a flag */
+    const char *bare;     /* value where none follows: at the end, or before another option; NULL: one is needed */
     const char *initial;  /* default, parsed like a value from the command line; NULL: 0, NULL or false */
     const char *shown;    /* default in words, where initial does not say it */
     const char *help;     /* one sentence without full stop; the choices, if any, follow it */

@@ -312,7 +312,6 @@ static void test_bad_command_lines_are_refused_in_one_sentence(void **state)
         {"bench --material diffuse:0.8,phong:kd=0.9,ks=0.9", "kd + ks"},
         {"bench --env sky:noon", "sky:noon"},
         {"bench --quick=1", "--quick"},
-        {"bench --json", "--json"},
         {"bench --jsn a", "did you mean --json?"},
         {"bench --out a.png", "--out"},
         {"bench map.hdr", "map.hdr"},

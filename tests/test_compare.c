@@ -168,7 +168,7 @@ static void json_goes_to_standard_output(void **state)
     json_decref(seen);
     static char first[sizeof program_out];
     strcpy(first, program_out);
-    succeeds("compare a.pfm b.pfm --json - --threads 3");
+    succeeds("compare a.pfm b.pfm --json --threads 3");
     assert_string_equal(program_out, first);
 }
 
