@@ -73,7 +73,7 @@ san: dependencies-test build-asan/build.ninja
 # long.
 tsan: dependencies-test build-tsan/build.ninja
 	@cmake --build build-tsan
-	@cd build-tsan && $(CTEST) --tests-regex '^test_(core|environment|source|video_files|tables|pools|isa|rays|frame|hostile|comparison|cli)$$|^sequence_threads$$'
+	@cd build-tsan && $(CTEST) --tests-regex '^test_(core|environment|source|video_files|tables|pools|isa|rays|frame|hostile|comparison|cli)$$|^(sequence|reference)_threads$$'
 
 # Each target for so long, or one of them alone; docs/fuzzing.md tells more.
 fuzz: dependencies-ci build-fuzz/build.ninja

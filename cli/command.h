@@ -27,6 +27,7 @@ int command_inspect(const cli_options *options);
 int command_samples(const cli_options *options);
 int command_compare(const cli_options *options);
 int command_study(const cli_options *options);
+int command_reference(const cli_options *options);
 int command_info(const cli_options *options);
 int command_help(const cli_options *options);
 

@@ -101,8 +101,7 @@ void help_program(void)
 void help_command(const cli_command *command)
 {
     printf("heliostat %s: %s\n\nUsage: heliostat %s\n", command->name, command->summary, command->usage);
-    if (command->bit &
-        (COMMANDS_OF_SCENES | COMMAND_BENCH | COMMAND_CONVERT | COMMAND_INSPECT | COMMAND_COMPARE | COMMAND_STUDY))
+    if (command->bit & ~(unsigned)(COMMAND_INFO | COMMAND_HELP))
         printf("\nValues follow their option as --name VALUE or --name=VALUE; [defaults] stand in brackets.\n");
     for (int group = 0; group < GROUP_COUNT; group++)
         print_group((option_group)group, command->bit);

@@ -98,6 +98,12 @@ static const help_entry examples[] = {
     {"heliostat study --strategies face,face+brdf,light+brdf --spp 4,16,64,256 --envs 'probes/*.hdr'",
      "which strategy is best at equal samples and at equal time: a page of curves, pictures and tables"},
     {"heliostat study --study study.json --resume --out night", "go on with a study whose options are in a file"},
+    {"heliostat reference --spp 655000 --out truth.exr --resume",
+     "ground truth, by as many samples as the paper took; the same again goes on after a kill"},
+    {"heliostat reference --strategy face+brdf --error 0.001 --out truth.exr",
+     "until pixels are known to a thousandth, with samples that get there sooner"},
+    {"heliostat reference --method quadrature --visibility none --size 640x360 --out exact.exr",
+     "the light of every texel, without noise"},
     {"heliostat bench --stages tables,frame --json bench.json", "how fast this machine is"},
 };
 const help_section help_examples = {"Examples", examples, COUNT(examples), COMMAND_ALL};

@@ -23,6 +23,8 @@ const cli_command command_table[] = {
      "measure how far a picture or a sequence is from its reference", command_compare},
     {"study", COMMAND_STUDY, "study [options]",
      "compare strategies over sample counts, maps and materials, and make a page of it", command_study},
+    {"reference", COMMAND_REFERENCE, "reference [options]",
+     "ground truth of a scene: a picture with the standard error of each pixel", command_reference},
     {"bench", COMMAND_BENCH, "bench [options]", "measure how fast each stage is on this machine", command_bench},
     {"info", COMMAND_INFO, "info", "show the version, what this build can do, and the processor", command_info},
     {"help", COMMAND_HELP, "help [command] [--man]", "print the help of a command, or the manual page", command_help},

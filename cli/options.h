@@ -16,8 +16,9 @@ enum {
     COMMAND_CONVERT = 1 << 4,
     COMMAND_INSPECT = 1 << 5,
     COMMAND_SAMPLES = 1 << 6,
-    COMMANDS_OF_SCENES = COMMAND_RENDER | COMMAND_SAMPLES, /* which light a mesh */
     COMMAND_COMPARE = 1 << 7,
+    COMMAND_REFERENCE = 1 << 8,
+    COMMANDS_OF_SCENES = COMMAND_RENDER | COMMAND_SAMPLES | COMMAND_REFERENCE, /* which light a mesh */
     COMMAND_STUDY = 1 << 9,
     COMMAND_ALL = COMMANDS_OF_SCENES | COMMAND_INFO | COMMAND_HELP | COMMAND_BENCH | COMMAND_CONVERT | COMMAND_INSPECT |
                   COMMAND_COMPARE | COMMAND_STUDY
@@ -74,6 +75,14 @@ typedef struct study_options {
     bool resume;
 } study_options;
 
+/* What reference alone takes, or with other defaults. */
+typedef struct reference_options {
+    const char *method, *strategy, *out;
+    uint32_t spp;                      /* 0: not given */
+    double seconds, error, save_every; /* likewise; save_every: seconds */
+    bool resume, keep_checkpoint;
+} reference_options;
+
 /* What the command line says. A pointer that is NULL means that the option was not given and has no fixed default. */
 typedef struct cli_options {
     const char *env, *layout;
@@ -110,6 +119,7 @@ typedef struct cli_options {
     samples_options samples;
     compare_options compare;
     study_options study;
+    reference_options truth; /* of reference */
 
     const char *backend;
     uint32_t threads; /* 0: one per logical core */
@@ -145,6 +155,7 @@ typedef enum option_group {
     GROUP_SAMPLES,
     GROUP_COMPARE,
     GROUP_STUDY,
+    GROUP_REFERENCE,
     GROUP_BENCH,
     GROUP_PROGRAM,
     GROUP_COUNT

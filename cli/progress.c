@@ -14,7 +14,7 @@
 enum { LINE_SIZE = 192, BAR_WIDTH = 20, LEAST_BAR = 4 };
 static const double REFRESH_MS = 100;
 
-static void format_time(double milliseconds, char text[16])
+void progress_format_time(double milliseconds, char text[16])
 {
     double seconds = fmin(floor(milliseconds / 1e3 + 0.5), 359999);
     unsigned whole = (unsigned)seconds;
@@ -46,11 +46,6 @@ static void format_bar(double done, size_t rest, char bar[BAR_WIDTH + 4])
     strcpy(bar + 2 + width, "]");
 }
 
-/* What a line says: at a narrow terminal the bar goes first, then what is least needed, which comes last. */
-typedef struct progress_line {
-    char head[64], left[32], speed[48], past[32];
-} progress_line;
-
 static void join(const progress_line *line, double done, char text[LINE_SIZE])
 {
     const char *const parts[] = {line->left, line->speed, line->past};
@@ -69,10 +64,10 @@ static void format_picture(const progress_bar *progress, double elapsed, double 
 {
     progress_line line = {.speed = ""};
     char past[16], left[16] = "?", rate[32];
-    format_time(elapsed, past);
+    progress_format_time(elapsed, past);
     format_rate(done * progress->pixels / elapsed * 1e3, rate);
     if (done > 0)
-        format_time(elapsed / done - elapsed, left);
+        progress_format_time(elapsed / done - elapsed, left);
     snprintf(line.head, sizeof line.head, "rendering %.0f %%", floor(done * 100));
     snprintf(line.left, sizeof line.left, " %s left", left);
     if (progress->pixels > 0)
@@ -88,7 +83,7 @@ static void format_sequence(const progress_bar *progress, double elapsed, double
     char past[16], left[16] = "?";
     double rendered = (double)progress->rendered + done, passed = (double)progress->passed + done;
     double fps = rendered / elapsed * 1e3, total = (double)progress->total;
-    format_time(elapsed, past);
+    progress_format_time(elapsed, past);
     if (progress->total == 0) {
         snprintf(line.head, sizeof line.head, "frame %" PRIu64, progress->passed + 1);
         snprintf(line.speed, sizeof line.speed, ", %.3g frames/s", fps);
@@ -97,7 +92,7 @@ static void format_sequence(const progress_bar *progress, double elapsed, double
         return;
     }
     if (fps > 0)
-        format_time(fmax(total - passed, 0) / fps * 1e3, left);
+        progress_format_time(fmax(total - passed, 0) / fps * 1e3, left);
     uint64_t number = progress->passed < progress->total ? progress->passed + 1 : progress->total;
     snprintf(line.head, sizeof line.head, "frame %" PRIu64 " of %" PRIu64, number, progress->total);
     snprintf(line.left, sizeof line.left, " %.3g frames/s", fps);
@@ -129,11 +124,24 @@ void progress_pass(progress_bar *progress, bool is_rendered)
     progress->rendered += is_rendered;
 }
 
+bool progress_is_due(const progress_bar *progress)
+{
+    return progress->visible && machine_milliseconds() - progress->drawn >= REFRESH_MS;
+}
+
+void progress_show(progress_bar *progress, const progress_line *line, double done)
+{
+    char text[LINE_SIZE];
+    join(line, done, text);
+    message_draw_line(text);
+    progress->drawn = machine_milliseconds();
+}
+
 bool progress_update(void *user, float done)
 {
     progress_bar *progress = user;
-    double now = machine_milliseconds();
-    if (progress->visible && now - progress->drawn >= REFRESH_MS) {
+    if (progress_is_due(progress)) {
+        double now = machine_milliseconds();
         draw(progress, now - progress->started, fmin(fmax((double)done, 0), 1));
         progress->drawn = now;
     }

@@ -15,6 +15,14 @@ typedef struct progress_bar {
     uint64_t rendered;     /* how many of these took time */
 } progress_bar;
 
+/* What a line says: at a narrow terminal the bar goes first, then what is least needed, which comes last. */
+typedef struct progress_line {
+    char head[64], left[32], speed[48], past[32];
+} progress_line;
+
+/* Hours, minutes and seconds. */
+void progress_format_time(double milliseconds, char text[16]);
+
 /* Starts the clock. Nothing is drawn where stderr is no terminal, or if hidden. */
 void progress_start(progress_bar *progress, uint64_t total, double pixels, bool hidden);
 
@@ -24,6 +32,12 @@ void progress_pass(progress_bar *progress, bool is_rendered);
 /* Shows the part done of the frame, 0..1, at most ten times per second. Fits helio_frame_desc, with user a
  * progress_bar: false asks the renderer to stop, because a signal came. */
 bool progress_update(void *user, float done);
+
+/* Is it time to show something, a tenth of a second after the last time? Never, if nothing is shown at all. */
+bool progress_is_due(const progress_bar *progress);
+
+/* Shows a line of the caller's. done: 0..1; less than 0: there is no bar. */
+void progress_show(progress_bar *progress, const progress_line *line, double done);
 
 /* Clears the line. */
 void progress_end(progress_bar *progress);

@@ -59,10 +59,15 @@ static helio_status make_environment(render_job *job)
     return status == HELIO_OK ? helio_environment_orient(job->environment, &orientation) : status;
 }
 
-static helio_status make_renderer(render_job *job)
+static helio_status place_camera(render_job *job)
+{
+    return helio_camera_parse(job->plan.options->camera, job->mesh, render_plan_aspect(&job->plan), &job->camera);
+}
+
+helio_renderer_desc render_job_describe(const render_job *job)
 {
     const cli_options *options = job->plan.options;
-    const helio_renderer_desc desc = {
+    return (helio_renderer_desc){
         .environment = job->environment,
         .scene = job->scene,
         .width = options->size[0],
@@ -78,9 +83,13 @@ static helio_status make_renderer(render_job *job)
         .background = job->plan.background,
         .aovs = options->aovs,
     };
-    helio_status status = helio_camera_parse(options->camera, job->mesh, render_plan_aspect(&job->plan), &job->camera);
-    if (status == HELIO_OK)
-        status = helio_renderer_create(job->context, &desc, &job->renderer);
+}
+
+static helio_status make_renderer(render_job *job)
+{
+    const cli_options *options = job->plan.options;
+    const helio_renderer_desc desc = render_job_describe(job);
+    helio_status status = helio_renderer_create(job->context, &desc, &job->renderer);
     if (status != HELIO_OK || !options->verbose)
         return status;
     uint32_t passes = helio_renderer_passes(job->renderer), threads = helio_context_threads(job->context);
@@ -111,10 +120,17 @@ int render_job_open_source(render_job *job)
     return run_steps(job, steps, sizeof steps / sizeof steps[0]);
 }
 
+int render_job_open_parts(render_job *job)
+{
+    static helio_status (*const steps[])(render_job *) = {load_scene, make_environment, place_camera};
+    return run_steps(job, steps, sizeof steps / sizeof steps[0]);
+}
+
 int render_job_open_scene(render_job *job)
 {
-    static helio_status (*const steps[])(render_job *) = {load_scene, make_environment, make_renderer};
-    return run_steps(job, steps, sizeof steps / sizeof steps[0]);
+    static helio_status (*const steps[])(render_job *) = {make_renderer};
+    int code = render_job_open_parts(job);
+    return code == EXIT_CODE_OK ? run_steps(job, steps, 1) : code;
 }
 
 int render_job_open(render_job *job, const cli_options *options)

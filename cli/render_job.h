@@ -34,6 +34,10 @@ int render_job_open(render_job *job, const cli_options *options);
 int render_job_open_source(render_job *job);
 int render_job_open_scene(render_job *job);
 
+/* The second half without a renderer, for commands that make their own, such as this one. */
+int render_job_open_parts(render_job *job);
+helio_renderer_desc render_job_describe(const render_job *job);
+
 void render_job_close(render_job *job);
 
 /* The next frame of the source; rgb and sky are NULL at the end. */

@@ -19,6 +19,7 @@ set(PROGRAM_SOURCES
     cli/numbered_path.c cli/output_plan.c cli/render_job.c cli/render_sequence.c cli/sequence_report.c cli/sheet_labels.c cli/shown_picture.c
     cli/help.c cli/help_texts.c cli/interrupt.c cli/json_file.c cli/list.c
     cli/machine.c cli/main.c cli/mesh_path.c cli/manual.c cli/message.c cli/number.c cli/option_table.c cli/options.c cli/output_file.c
+    cli/command_reference.c cli/narrow_light.c cli/reference_plan.c cli/reference_report.c cli/reference_run.c
     cli/progress.c cli/render_plan.c cli/samples_gather.c cli/samples_json.c cli/samples_pixel.c cli/samples_plan.c
     cli/samples_words.c cli/stats.c cli/suggestion.c
     cli/canvas_svg.c cli/chart.c cli/command_study.c cli/data_uri.c cli/digest.c cli/false_colour.c cli/study_charts.c

@@ -10,6 +10,7 @@
 #include <heliostat/core.h>
 #include <heliostat/environment.h>
 #include <heliostat/image.h>
+#include <heliostat/reference.h>
 #include <heliostat/renderer.h>
 #include <heliostat/sampling.h>
 #include <heliostat/scene.h>

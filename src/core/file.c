@@ -6,23 +6,42 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-static helio_status read_stream(helio_context *context, FILE *stream, const char *path, size_t max_bytes,
-                                unsigned char **bytes, size_t *size)
+static helio_status measure(FILE *stream, const char *path, uint64_t *size)
 {
     struct stat status;
     if (fstat(fileno(stream), &status) != 0)
         return fail(HELIO_ERR_IO, "%s cannot be read: %s", path, strerror(errno));
     if (!S_ISREG(status.st_mode))
         return fail(HELIO_ERR_IO, "%s is not a file", path);
-    if ((uintmax_t)status.st_size > max_bytes)
-        return fail(HELIO_ERR_DATA, "%s is too large: %jd bytes, where %zu are allowed", path, (intmax_t)status.st_size,
-                    max_bytes);
-    size_t length = (size_t)status.st_size;
+    *size = (uint64_t)status.st_size;
+    return HELIO_OK;
+}
+
+helio_status file_open(const char *path, FILE **stream, uint64_t *size)
+{
+    /* Without O_NONBLOCK the opening of a named pipe could wait for ever. */
+    int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    *stream = descriptor < 0 ? NULL : fdopen(descriptor, "rb");
+    if (*stream == NULL) {
+        if (descriptor >= 0)
+            close(descriptor);
+        return fail(HELIO_ERR_IO, "%s cannot be opened: %s", path, strerror(errno));
+    }
+    helio_status status = measure(*stream, path, size);
+    if (status != HELIO_OK)
+        fclose(*stream);
+    return status;
+}
+
+static helio_status read_stream(helio_context *context, FILE *stream, const char *path, size_t length,
+                                unsigned char **bytes)
+{
     unsigned char *memory = context_allocate(context, length + 1, 1);
     if (memory == NULL)
         return fail(HELIO_ERR_MEMORY, "no memory to read %s (%zu bytes)", path, length);
@@ -31,22 +50,23 @@ static helio_status read_stream(helio_context *context, FILE *stream, const char
         return fail(HELIO_ERR_IO, "%s cannot be read to its end", path);
     }
     *bytes = memory;
-    *size = length;
     return HELIO_OK;
 }
 
 helio_status file_read(helio_context *context, const char *path, size_t max_bytes, unsigned char **bytes, size_t *size)
 {
-    /* Without O_NONBLOCK the opening of a named pipe could wait for ever. */
-    int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    FILE *stream = descriptor < 0 ? NULL : fdopen(descriptor, "rb");
-    if (stream == NULL) {
-        if (descriptor >= 0)
-            close(descriptor);
-        return fail(HELIO_ERR_IO, "%s cannot be opened: %s", path, strerror(errno));
-    }
-    helio_status status = read_stream(context, stream, path, max_bytes, bytes, size);
+    FILE *stream;
+    uint64_t length;
+    HELIO_TRY(file_open(path, &stream, &length));
+    helio_status status;
+    if (length > max_bytes)
+        status =
+            fail(HELIO_ERR_DATA, "%s is too large: %" PRIu64 " bytes, where %zu are allowed", path, length, max_bytes);
+    else
+        status = read_stream(context, stream, path, (size_t)length, bytes);
     fclose(stream);
+    if (status == HELIO_OK)
+        *size = (size_t)length;
     return status;
 }
 

@@ -7,6 +7,9 @@
 
 #include <stdio.h>
 
+/* Opens a regular file for reading. */
+helio_status file_open(const char *path, FILE **stream, uint64_t *size);
+
 /* Reads a regular file into memory of the context; refuses more than max_bytes before memory is taken. */
 helio_status file_read(helio_context *context, const char *path, size_t max_bytes, unsigned char **bytes, size_t *size);
 

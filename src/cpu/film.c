@@ -44,15 +44,26 @@ void film_destroy(helio_context *context, struct film *film)
     *film = (struct film){0};
 }
 
-static void develop_light(const film_light *light, bool shows_background, double weight, float rgba[4], float *object)
+/* Share of the light that reaches the catcher. */
+static double lit_share(const film_light *light)
 {
-    double scale = weight > 0 ? 1.0 / weight : 0.0;
-    double lit = light->unoccluded > 0 ? light->reaching / light->unoccluded : 1.0;
-    double alpha = light->covered + light->catcher * (1.0 - lit);
-    for (int c = 0; c < 3; c++) {
-        double behind = shows_background ? light->catcher_background[c] * lit : 0.0;
-        rgba[c] = (float)((light->rgb[c] + behind) * scale);
-    }
+    return light->unoccluded > 0 ? light->reaching / light->unoccluded : 1.0;
+}
+
+void film_colour(const film_light *light, bool shows_background, double weight, double rgb[3])
+{
+    double scale = weight > 0 ? 1.0 / weight : 0.0, lit = shows_background ? lit_share(light) : 0.0;
+    for (int c = 0; c < 3; c++)
+        rgb[c] = (light->rgb[c] + light->catcher_background[c] * lit) * scale;
+}
+
+void film_develop_light(const film_light *light, bool shows_background, double weight, float rgba[4], float *object)
+{
+    double scale = weight > 0 ? 1.0 / weight : 0.0, rgb[3];
+    double alpha = light->covered + light->catcher * (1.0 - lit_share(light));
+    film_colour(light, shows_background, weight, rgb);
+    for (int c = 0; c < 3; c++)
+        rgba[c] = (float)rgb[c];
     rgba[3] = shows_background ? (float)(weight > 0) : (float)(alpha * scale);
     *object = (float)(light->object * scale);
 }
@@ -74,7 +85,7 @@ static void develop_surface(const struct film *film, size_t index, const film_su
 
 void film_develop(const struct film *film, size_t index, const film_pixel *pixel, double weight)
 {
-    develop_light(&pixel->light, film->shows_background, weight, film->rgba + index * 4, &film->object[index]);
+    film_develop_light(&pixel->light, film->shows_background, weight, film->rgba + index * 4, &film->object[index]);
     if (film->albedo)
         develop_surface(film, index, &pixel->surface);
 }

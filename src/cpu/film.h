@@ -60,6 +60,25 @@ static inline void film_store(const struct film *film, size_t index, const film_
         film->surfaces[index] = pixel->surface;
 }
 
+static inline void film_light_add(film_light *sum, const film_light *more)
+{
+    for (int c = 0; c < 3; c++) {
+        sum->rgb[c] += more->rgb[c];
+        sum->catcher_background[c] += more->catcher_background[c];
+    }
+    sum->covered += more->covered;
+    sum->object += more->object;
+    sum->catcher += more->catcher;
+    sum->reaching += more->reaching;
+    sum->unoccluded += more->unoccluded;
+}
+
+/* The colour that the sums come to. weight: of all samples that are in them; 0 makes it black. */
+void film_colour(const film_light *light, bool shows_background, double weight, double rgb[3]);
+
+/* The same with alpha and the coverage of the object, as they are in pictures. */
+void film_develop_light(const film_light *light, bool shows_background, double weight, float rgba[4], float *object);
+
 /* Writes a pixel of the picture. weight: of all samples that are in its sums; 0 leaves it black and clear. */
 void film_develop(const struct film *film, size_t index, const film_pixel *pixel, double weight);
 

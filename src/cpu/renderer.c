@@ -98,25 +98,24 @@ static helio_status create_parts(helio_renderer *renderer)
         .height = desc->height,
         .shows_background = desc->background == HELIO_BACKGROUND_ENVIRONMENT,
         .has_surfaces = desc->aovs,
-        .has_steps = frame_step_count(renderer) > 1,
+        .has_steps = frame_step_count(renderer) > 1 || renderer->extras.keeps_sums,
     };
     HELIO_TRY(film_create(renderer->context, &film, &renderer->film));
     return hits_create(renderer->context, desc->scene, desc->width, desc->height, &renderer->hits);
 }
 
-helio_status helio_renderer_create(helio_context *context, const helio_renderer_desc *given, helio_renderer **out)
+helio_status renderer_create(helio_context *context, const helio_renderer_desc *given, const renderer_extras *extras,
+                             helio_renderer **out)
 {
-    if (out != NULL)
-        *out = NULL;
-    if (context == NULL || given == NULL || out == NULL)
-        return fail(HELIO_ERR_ARGUMENT, "helio_renderer_create needs a context, a desc and a place for the result");
     helio_renderer_desc desc;
+    *out = NULL;
     HELIO_TRY(resolve_desc(given, &desc));
     helio_renderer *renderer = context_allocate(context, 1, sizeof *renderer);
     if (renderer == NULL)
         return HELIO_ERR_MEMORY;
     renderer->context = context;
     renderer->desc = desc;
+    renderer->extras = *extras;
     helio_status status = create_parts(renderer);
     if (status != HELIO_OK) {
         helio_renderer_destroy(renderer);
@@ -124,6 +123,15 @@ helio_status helio_renderer_create(helio_context *context, const helio_renderer_
     }
     *out = renderer;
     return HELIO_OK;
+}
+
+helio_status helio_renderer_create(helio_context *context, const helio_renderer_desc *desc, helio_renderer **out)
+{
+    if (out != NULL)
+        *out = NULL;
+    if (context == NULL || desc == NULL || out == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "helio_renderer_create needs a context, a desc and a place for the result");
+    return renderer_create(context, desc, &(renderer_extras){0}, out);
 }
 
 void helio_renderer_destroy(helio_renderer *renderer)

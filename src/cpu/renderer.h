@@ -6,6 +6,7 @@
 #include "cpu/background.h"
 #include "cpu/film.h"
 #include "cpu/hits.h"
+#include "sampling/estimate.h"
 #include "scene/scene.h"
 
 #include <heliostat/renderer.h>
@@ -16,14 +17,31 @@ enum { TILE = 16 }; /* pixels along the edge of a tile: the piece of work of one
 _Static_assert((int)TILE <= (int)BACKGROUND_PIXELS && (int)TILE <= (int)SCENE_RAYS,
                "a row of a tile is handled at once");
 
+/* Finds the light that leaves a point, in place of an estimate from samples. Called for a pixel by one thread at a
+ * time.
+ */
+typedef void (*renderer_lighting)(void *user, size_t pixel, const helio_shading_point *point, estimate_result *result);
+
+/* What only references ask for. */
+typedef struct renderer_extras {
+    bool keeps_sums; /* film.lights holds the sums of the latest frame when it is done, but no picture is made */
+    renderer_lighting lighting; /* default: estimates */
+    void *user;                 /* handed to it */
+} renderer_extras;
+
 struct helio_renderer {
     helio_context *context;
+    renderer_extras extras;
     helio_renderer_desc desc; /* with defaults resolved */
     helio_tables *tables;
     helio_pools *pools;
     struct film film;
     struct hits hits; /* of the current camera sample */
 };
+
+/* helio_renderer_create() with extras. */
+helio_status renderer_create(helio_context *context, const helio_renderer_desc *desc, const renderer_extras *extras,
+                             helio_renderer **renderer);
 
 /* One camera sample with all or a part of its light samples. Light samples beyond what the pools give to a point at
  * once come in parts, each from pools of its own. */

@@ -104,7 +104,7 @@ typedef struct pixel_queue {
 static bool is_simple(const struct frame *frame)
 {
     const helio_renderer *renderer = frame->renderer;
-    return frame->step.is_first && frame->step.is_last && !renderer->film.albedo &&
+    return frame->step.is_first && frame->step.is_last && !renderer->film.albedo && !renderer->extras.keeps_sums &&
            renderer->desc.scene->ground != HELIO_GROUND_SHADOW;
 }
 
@@ -117,7 +117,7 @@ static void load_pixel(const struct frame *frame, size_t index, film_pixel *pixe
 
 static void store_pixel(const struct frame *frame, size_t index, const film_pixel *pixel)
 {
-    if (frame->step.is_last)
+    if (frame->step.is_last && !frame->renderer->extras.keeps_sums)
         film_develop(&frame->renderer->film, index, pixel, frame->weight);
     else
         film_store(&frame->renderer->film, index, pixel);
@@ -156,13 +156,24 @@ static void put_pixel(const struct frame *frame, const pixel_queue *queue, uint3
 
 /* ---- tiles ---- */
 
+/* The light of all pixels in a queue. */
+static void find_light(const struct frame *frame, const pixel_queue *queue, estimate_result results[POINT_BLOCK])
+{
+    const renderer_extras *extras = &frame->renderer->extras;
+    if (extras->lighting == NULL)
+        estimate_points(frame->renderer->pools, queue->count, queue->points, &frame->estimate, results);
+    else
+        for (uint32_t i = 0; i < queue->count; i++)
+            extras->lighting(extras->user, queue->pixels[i], &queue->points[i], &results[i]);
+}
+
 static void light_queue(const struct frame *frame, pixel_queue *queue, frame_counts *counts)
 {
     estimate_result results[POINT_BLOCK];
     if (queue->count == 0)
         return;
     bool simple = is_simple(frame);
-    estimate_points(frame->renderer->pools, queue->count, queue->points, &frame->estimate, results);
+    find_light(frame, queue, results);
     for (uint32_t i = 0; i < queue->count; i++) {
         counts->samples += results[i].info.samples;
         counts->useful += results[i].info.useful;

@@ -18,6 +18,7 @@
 
 struct background;
 struct exposure_columns;
+struct face_points;
 struct overlap_tile;
 struct resampling;
 struct resampling_space;
@@ -77,6 +78,10 @@ typedef struct kernel_set {
      * centre. The same bits with every instruction set. */
     void (*add_light)(const float *rgb, const float *solid_angles, float v, uint32_t count,
                       struct exposure_columns *sums);
+
+    /* Fills a block with the directions of places of a face, and their light: radiance x solid angle, density 1. The
+     * same bits with every instruction set. */
+    void (*aim)(const struct face_points *points, sample_block *block);
 } kernel_set;
 
 const kernel_set *kernels_of(isa set);
@@ -103,6 +108,7 @@ bool KERNEL(resample)(const struct resampling *work, const struct view_group *gr
 bool KERNEL(may_have_faults)(const void *numbers, uint32_t count, bool half);
 void KERNEL(add_light)(const float *rgb, const float *solid_angles, float v, uint32_t count,
                        struct exposure_columns *sums);
+void KERNEL(aim)(const struct face_points *points, sample_block *block);
 extern const kernel_set KERNEL(kernels);
 #endif
 

@@ -18,4 +18,5 @@ const kernel_set KERNEL(kernels) = {
     .resample = KERNEL(resample),
     .may_have_faults = KERNEL(may_have_faults),
     .add_light = KERNEL(add_light),
+    .aim = KERNEL(aim),
 };
