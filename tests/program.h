@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * program.h - the heliostat program as the tests run it: command lines in; exit codes, sentences and files out.
- * HELIOSTAT_PROGRAM names the program. One program at a time. */
+ * HELIOSTAT_PROGRAM names the program. One program at a time.
+ *
+ * Runs are calls of the program's main() in a child of the test: to start the file takes ten times as long, as a
+ * hundred libraries have to be linked. The file itself is started by thorough runs, by the tests on terminals and by
+ * check_install. */
 #ifndef HELIOSTAT_TESTS_PROGRAM_H
 #define HELIOSTAT_TESTS_PROGRAM_H
 
@@ -29,6 +33,8 @@ enum { NEEDS_RENDERER = 1, NEEDS_PNG = 2, NEEDS_EXR = 4, NEEDS_ALL = 7 };
 void skip_without(unsigned features);
 
 /* ---- runs ---- */
+
+int heliostat_main(int count, char **arguments);
 
 /* Of the programs that are started from here on; 0: none. */
 typedef struct program_limit {

@@ -101,6 +101,13 @@ helio_environment *make_environment(helio_context *context, helio_layout layout,
     return environment;
 }
 
+/* ---- time ---- */
+
+bool is_thorough(void)
+{
+    return getenv("HELIO_TEST_THOROUGH") != NULL;
+}
+
 /* ---- files ---- */
 
 void find_test_data(const char *name, char path[TEST_PATH_SIZE])

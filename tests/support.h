@@ -62,6 +62,12 @@ double chi_square_tail(const double *observed, const double *expected, size_t bi
 helio_environment *make_environment(helio_context *context, helio_layout layout, uint32_t width, uint32_t height,
                                     uint32_t cube_size, const float *rgb, helio_environment_info *info);
 
+/* ---- time ---- */
+
+/* Are sweeps wanted that `make test` has no time for? Then the environment has HELIO_TEST_THOROUGH, as in `make
+ * test-long`, whose tests called ..._thorough are the same programs. */
+bool is_thorough(void);
+
 /* ---- files ---- */
 
 enum { TEST_PATH_SIZE = 4096 };

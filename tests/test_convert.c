@@ -222,6 +222,8 @@ static void light_stays_where_it_is_between_all_pairs_of_layouts(void **state)
     }
     for (int k = 0; k < LAYOUT_COUNT; k++) {
         char options[64];
+        if (!is_thorough() && k % 2 != 0) /* test_layouts has all pairs, too */
+            continue;
         snprintf(options, sizeof options, "--quiet --to %s", LAYOUTS[k]);
         convert("in_%d.hdr", options, is_faces(LAYOUTS[k]) ? "out_%d_%s.pfm" : "out_%d.pfm");
         for (int i = 0; i < LAYOUT_COUNT; i++) {
@@ -279,14 +281,14 @@ static float radiance_from(const map *of, const double direction[3], double *flu
 static void a_sun_of_one_pixel_keeps_its_flux_when_the_map_shrinks(void **state)
 {
     (void)state;
-    enum { ROW = 83, COLUMN = 429 };
+    const uint32_t width = is_thorough() ? 1024 : 256, row = 83 * width / 1024, column = 429 * width / 1024;
     const double texel = 4 * acos(-1) / (6.0 * FACE_SIZE * FACE_SIZE);
-    map sun = make_map(HELIO_LAYOUT_LATLONG, 1024, 512);
+    map sun = make_map(HELIO_LAYOUT_LATLONG, width, width / 2);
     for (size_t c = 0; c < 3; c++)
-        sun.rgb[3 * ((size_t)ROW * sun.width + COLUMN) + c] = 60000;
+        sun.rgb[3 * ((size_t)row * sun.width + column) + c] = 60000;
     write_map("sun.hdr", &sun);
     double direction[3], flux = flux_of(&sun), kept;
-    latlong_direction(&sun, ROW, COLUMN, direction);
+    latlong_direction(&sun, row, column, direction);
     free(sun.rgb);
     json_t *before = inspect("sun.hdr");
     assert_close(number_of(before, "flux"), flux, 1e-3, "the flux"); /* RGBE holds 60000 to 1/256 */
@@ -294,6 +296,8 @@ static void a_sun_of_one_pixel_keeps_its_flux_when_the_map_shrinks(void **state)
     json_decref(before);
     for (int i = 0; i < LAYOUT_COUNT; i++) {
         char options[64];
+        if (!is_thorough() && (i % 3 != 0)) /* one of each kind */
+            continue;
         snprintf(options, sizeof options, "--quiet --env-size 16 --to %s", LAYOUTS[i]);
         convert("sun.hdr", options, is_faces(LAYOUTS[i]) ? "small_%s.pfm" : "small.pfm");
         map small = is_faces(LAYOUTS[i]) ? read_faces("small_", ".pfm") : read_layout(LAYOUTS[i], "small");
@@ -532,12 +536,13 @@ static void turns_are_baked_in(void **state)
     (void)state;
     static const char *const layouts[] = {"latlong", "strip", "octahedral"};
     static const double angles[] = {630, -180, 33.3};
+    const size_t least = is_thorough() ? 0 : 1; /* a quarter turn is in square_turns_keep_every_bit() */
     map smooth = make_smooth();
     write_map("in_0.hdr", &smooth);
     convert("in_0.hdr", "-q --to strip", "in_1.hdr");
     convert("in_0.hdr", "-q --to octahedral", "in_2.hdr");
     for (size_t to = 0; to < 3; to++)
-        for (size_t angle = 0; angle < 3; angle++)
+        for (size_t angle = least; angle < 3; angle++)
             check_turn(layouts, layouts[to], &smooth, angles[angle], (to + angle) % 2 == 0);
     free(smooth.rgb);
 }
@@ -732,7 +737,6 @@ static void mistakes_on_the_command_line_are_one_sentence(void **state)
     fails("convert a.pfm --out b.tiff", 2, ".hdr");
     fails("convert a.pfm b.pfm --out c.pfm", 2, "takes one input");
     fails("convert a.pfm --to sphere --out b.pfm", 2, "octahedral");
-    fails("convert a.pfm --too latlong --out b.pfm", 2, "did you mean --to?");
     fails("convert a.pfm --env-size 0 --out b.pfm", 2, "1 to 4096");
     fails("convert a.pfm --env-size 8 --size 8x4 --out b.pfm", 2, "give one of them");
     fails("convert a.pfm --to strip --size 8x4 --out b.pfm", 2, "6:1 or 1:6");
@@ -740,7 +744,6 @@ static void mistakes_on_the_command_line_are_one_sentence(void **state)
     fails("convert a.pfm --to faces --out b.pfm", 2, "%s");
     fails("convert a.pfm --to strip --out b_%s.pfm", 2, "--to faces");
     fails("convert a.pfm --size 65536x65536 --out b.pfm", 2, "2^28");
-    fails("convert a.pfm -q -v --out b.pfm", 2, "exclude each other");
     fails("convert constant:1,1 --out b.pfm", 2, "constant");
     fails("convert a.pfm --out a.pfm", 1, "would replace an input");
     fails("convert none.pfm --out b.pfm", 1, "none.pfm");
@@ -791,7 +794,8 @@ static void help_tells_all_options(void **state)
             fail_msg("convert --help does not tell of %s", words[i]);
 }
 
-int main(void)
+/* A pattern as the first argument picks tests. */
+int main(int count, char **arguments)
 {
     const struct CMUnitTest tests[] = {
         program_test(light_stays_where_it_is_between_all_pairs_of_layouts),
@@ -822,5 +826,7 @@ int main(void)
         program_test(ctrl_c_keeps_the_frames_that_are_done),
         program_test(help_tells_all_options),
     };
+    if (count > 1)
+        cmocka_set_test_filter(arguments[1]);
     return cmocka_run_group_tests_name("convert", tests, set_up_program, tear_down_program);
 }
