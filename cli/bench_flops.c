@@ -34,9 +34,11 @@ double bench_flops_per_sample(helio_strategy strategy, helio_material_kind kind)
     case HELIO_STRATEGY_COSINE: return count->weigh + COSINE_MIXTURE + counts[HELIO_MATERIAL_DIFFUSE].draw;
     case HELIO_STRATEGY_BRDF: return count->weigh + count->mixture + count->draw;
     case HELIO_STRATEGY_LIGHT_BRDF:
-    case HELIO_STRATEGY_FACE_BRDF: return count->weigh + count->mixture + 0.5 * (count->draw + LIGHT_DENSITY);
+    case HELIO_STRATEGY_FACE_BRDF:
+    case HELIO_STRATEGY_PRODUCT_BRDF: return count->weigh + count->mixture + 0.5 * (count->draw + LIGHT_DENSITY);
     case HELIO_STRATEGY_LIGHT:
     case HELIO_STRATEGY_FACE:
+    case HELIO_STRATEGY_PRODUCT:
     case HELIO_STRATEGY_AUTO: break;
     }
     return count->sum;

@@ -400,7 +400,7 @@ static void tables(void **state)
 
 static helio_status create_pools(world *w)
 {
-    for (helio_strategy strategy = HELIO_STRATEGY_AUTO; strategy <= HELIO_STRATEGY_FACE_BRDF; strategy++) {
+    for (helio_strategy strategy = HELIO_STRATEGY_AUTO; strategy <= HELIO_STRATEGY_PRODUCT_BRDF; strategy++) {
         helio_pools *pools = (helio_pools *)w;
         const helio_pools_desc desc = {.strategy = strategy, .length = 64};
         helio_status status = helio_pools_create(w->tables, &desc, &pools);

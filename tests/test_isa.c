@@ -25,7 +25,7 @@ static const double LARGEST_DIFFERENCE = 1e-4;
 /* Sharper lobes than roughness 0.1 or exponent 1000 magnify the rounding of directions. */
 static const double LARGEST_DIFFERENCE_SHARP = 1e-3;
 
-enum { MOST_SETS = 4, POINTS = 40 };
+enum { MOST_SETS = 4, POINTS = 40, BINS_PER_EDGE = 3 };
 
 /* ---- maps ---- */
 
@@ -102,7 +102,7 @@ static pipeline make_pipeline(const char *set, uint32_t threads, const isa_map *
     pipeline p = {0};
     const helio_context_desc desc = {
         .isa = set, .threads = threads, .parallel_for = threads == 0 ? run_backwards : NULL};
-    const helio_pools_desc pools = {.strategy = strategy, .length = 512};
+    const helio_pools_desc pools = {.strategy = strategy, .length = 512, .bins = BINS_PER_EDGE};
     assert_ok(helio_context_create(&desc, &p.context));
     assert_string_equal(helio_context_isa(p.context), set);
     p.environment =
@@ -137,8 +137,22 @@ static void compare_tables(const helio_tables *a, const helio_tables *b)
     assert_memory_equal(a->flux, b->flux, sizeof a->flux);
 }
 
-static const helio_strategy strategies[] = {HELIO_STRATEGY_COSINE,     HELIO_STRATEGY_BRDF, HELIO_STRATEGY_LIGHT,
-                                            HELIO_STRATEGY_LIGHT_BRDF, HELIO_STRATEGY_FACE, HELIO_STRATEGY_FACE_BRDF};
+/* Both may be NULL. */
+static void compare_bins(const normal_bins *a, const normal_bins *b)
+{
+    if (a == NULL)
+        return;
+    assert_memory_equal(a->tiles->light, b->tiles->light, sizeof a->tiles->light);
+    assert_memory_equal(a->tiles->sums, b->tiles->sums,
+                        (size_t)a->tiles->count * a->tiles->stride * sizeof *a->tiles->sums);
+    assert_memory_equal(a->sums, b->sums, (size_t)a->count * (a->tiles->count + 1) * sizeof *a->sums);
+    assert_memory_equal(a->shares, b->shares, a->count * sizeof *a->shares);
+    assert_memory_equal(a->list_starts, b->list_starts, sizeof a->list_starts);
+}
+
+static const helio_strategy strategies[] = {
+    HELIO_STRATEGY_COSINE, HELIO_STRATEGY_BRDF,      HELIO_STRATEGY_LIGHT,   HELIO_STRATEGY_LIGHT_BRDF,
+    HELIO_STRATEGY_FACE,   HELIO_STRATEGY_FACE_BRDF, HELIO_STRATEGY_PRODUCT, HELIO_STRATEGY_PRODUCT_BRDF};
 enum { STRATEGIES = sizeof strategies / sizeof strategies[0] };
 
 static void tables_and_pools_have_the_same_bits(void **state)
@@ -147,14 +161,17 @@ static void tables_and_pools_have_the_same_bits(void **state)
     isa_map maps[MAPS];
     make_maps(maps);
     for (int m = 0; m < MAPS; m++)
-        for (int weighting = 0; weighting < 2; weighting++) {
-            helio_strategy strategy = weighting ? HELIO_STRATEGY_LIGHT : HELIO_STRATEGY_FACE;
+        for (int k = 0; k < 3; k++) {
+            static const helio_strategy drawn[] = {HELIO_STRATEGY_FACE, HELIO_STRATEGY_LIGHT, HELIO_STRATEGY_PRODUCT};
+            helio_strategy strategy = drawn[k];
+            int weighting = k == 1;
             pipeline plain = make_pipeline("scalar", 1, &maps[m], (helio_weighting)weighting, strategy);
             for (uint32_t i = 0; helio_isa_name(i) != NULL; i++)
                 for (uint32_t threads = 0; threads < 4; threads++) {
                     pipeline other =
                         make_pipeline(helio_isa_name(i), threads, &maps[m], (helio_weighting)weighting, strategy);
                     compare_tables(plain.tables, other.tables);
+                    compare_bins(plain.pools->bins, other.pools->bins);
                     assert_memory_equal(plain.pools->samples, other.pools->samples,
                                         plain.pools->stride * POOL_ARRAYS * sizeof(float));
                     destroy_pipeline(&other);

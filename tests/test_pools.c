@@ -151,8 +151,9 @@ static void equal_seeds_give_equal_bits_on_any_threads(void **state)
     (void)state;
     float map[FLOATS];
     fill_noise(map, 2);
-    static const helio_strategy strategies[] = {HELIO_STRATEGY_FACE_BRDF, HELIO_STRATEGY_LIGHT_BRDF};
-    for (int k = 0; k < 2; k++) {
+    static const helio_strategy strategies[] = {HELIO_STRATEGY_FACE_BRDF, HELIO_STRATEGY_LIGHT_BRDF,
+                                                HELIO_STRATEGY_PRODUCT};
+    for (int k = 0; k < 3; k++) {
         fixture one = make_fixture_in(make_context(1, NULL), map, strategies[k], 2048);
         assert_ok(helio_pools_draw(one.pools, 1, 2));
         for (uint32_t threads = 0; threads < 6; threads++) {
@@ -465,8 +466,9 @@ static void stale_tables_are_refused(void **state)
     (void)state;
     float map[FLOATS];
     fill_noise(map, 7);
-    static const helio_strategy strategies[] = {HELIO_STRATEGY_FACE, HELIO_STRATEGY_LIGHT, HELIO_STRATEGY_COSINE};
-    for (int k = 0; k < 3; k++) {
+    static const helio_strategy strategies[] = {HELIO_STRATEGY_FACE, HELIO_STRATEGY_LIGHT, HELIO_STRATEGY_COSINE,
+                                                HELIO_STRATEGY_PRODUCT};
+    for (int k = 0; k < 4; k++) {
         fixture f = make_fixture(map, strategies[k], 64);
         helio_tables *fresh;
         helio_pools *early;
@@ -512,7 +514,13 @@ static void lengths_are_powers_of_two_and_a_point_takes_an_eighth(void **state)
     assert_ok(helio_pools_create(f.tables, NULL, &pools));
     assert_int_equal(pools->strategy, HELIO_STRATEGY_FACE_BRDF);
     helio_pools_destroy(pools);
-    assert_refused(helio_pools_create(f.tables, &(helio_pools_desc){.strategy = (helio_strategy)7}, &pools));
+    assert_ok(helio_pools_create(f.tables, &(helio_pools_desc){.strategy = HELIO_STRATEGY_PRODUCT}, &pools));
+    assert_int_equal(helio_pools_sample_limit(pools), 64);
+    helio_pools_destroy(pools);
+    const helio_pools_desc too_fine = {.strategy = HELIO_STRATEGY_PRODUCT, .bins = 33};
+    assert_refused(helio_pools_create(f.tables, &too_fine, &pools));
+    assert_non_null(strstr(helio_last_error(), "33"));
+    assert_refused(helio_pools_create(f.tables, &(helio_pools_desc){.strategy = (helio_strategy)9}, &pools));
     assert_refused(helio_pools_create(f.tables, &(helio_pools_desc){.strategy = (helio_strategy)-1}, &pools));
     assert_refused(helio_pools_create(NULL, NULL, &pools));
     assert_refused(helio_pools_create(f.tables, NULL, NULL));
@@ -528,7 +536,7 @@ static void drawing_takes_no_memory(void **state)
     (void)state;
     float map[FLOATS];
     fill_noise(map, 9);
-    for (helio_strategy strategy = HELIO_STRATEGY_AUTO; strategy <= HELIO_STRATEGY_FACE_BRDF; strategy++) {
+    for (helio_strategy strategy = HELIO_STRATEGY_AUTO; strategy <= HELIO_STRATEGY_PRODUCT_BRDF; strategy++) {
         memory_count count = {0};
         fixture f = make_fixture_in(make_context(2, &count), map, strategy, 64);
         size_t taken = count.taken;
@@ -564,22 +572,23 @@ static void creation_without_memory_fails_and_leaks_nothing(void **state)
 static void strategies_have_names(void **state)
 {
     (void)state;
-    static const char *const names[] = {"auto", "cosine", "brdf", "light", "light+brdf", "face", "face+brdf"};
-    for (int i = 0; i < 7; i++) {
+    static const char *const names[] = {"auto", "cosine",    "brdf",    "light",       "light+brdf",
+                                        "face", "face+brdf", "product", "product+brdf"};
+    for (int i = 0; i < 9; i++) {
         helio_strategy strategy = (helio_strategy)99;
         assert_string_equal(helio_strategy_name((helio_strategy)i), names[i]);
         assert_ok(helio_strategy_parse(names[i], &strategy));
         assert_int_equal(strategy, i);
         assert_int_equal(helio_strategy_resolve(strategy), i == 0 ? HELIO_STRATEGY_FACE_BRDF : i);
     }
-    static const char *const wrong[] = {"", "Face", "face+", "brdf+face", "product", NULL};
+    static const char *const wrong[] = {"", "Face", "face+", "brdf+face", "products", NULL};
     for (int i = 0; i < 6; i++) {
         helio_strategy kept = HELIO_STRATEGY_LIGHT;
         assert_refused(helio_strategy_parse(wrong[i], &kept));
         assert_int_equal(kept, HELIO_STRATEGY_LIGHT);
     }
     assert_refused(helio_strategy_parse("face", NULL));
-    assert_non_null(helio_strategy_name((helio_strategy)7));
+    assert_non_null(helio_strategy_name((helio_strategy)9));
     assert_non_null(helio_strategy_name((helio_strategy)-1));
 }
 

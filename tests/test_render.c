@@ -204,9 +204,9 @@ static double mean_light(setup *s, double *error)
 static void all_strategies_agree_with_shadows_on_each_material(void **state)
 {
     (void)state;
-    static const helio_strategy strategies[] = {HELIO_STRATEGY_LIGHT, HELIO_STRATEGY_COSINE,
-                                                HELIO_STRATEGY_BRDF,  HELIO_STRATEGY_LIGHT_BRDF,
-                                                HELIO_STRATEGY_FACE,  HELIO_STRATEGY_FACE_BRDF};
+    static const helio_strategy strategies[] = {
+        HELIO_STRATEGY_LIGHT, HELIO_STRATEGY_COSINE,    HELIO_STRATEGY_BRDF,    HELIO_STRATEGY_LIGHT_BRDF,
+        HELIO_STRATEGY_FACE,  HELIO_STRATEGY_FACE_BRDF, HELIO_STRATEGY_PRODUCT, HELIO_STRATEGY_PRODUCT_BRDF};
     const helio_material *materials[] = {&white, &glossy, &metal};
     helio_context *context = make_context(2, NULL);
     float map[MAP_HEIGHT][MAP_WIDTH][3];
@@ -214,7 +214,7 @@ static void all_strategies_agree_with_shadows_on_each_material(void **state)
     map[4][13][0] = map[4][13][1] = map[4][13][2] = 60.0f; /* a sun that cosine samples can meet */
     for (int m = 0; m < 3; m++) {
         double reference = 0, reference_error = 0;
-        for (int i = 0; i < 6; i++) {
+        for (int i = 0; i < 8; i++) {
             setup s = make_setup(context, make_sphere, materials[m], HELIO_GROUND_PLANE, map,
                                  (helio_renderer_desc){.strategy = strategies[i], .spp = 128});
             double error, mean = mean_light(&s, &error);

@@ -33,7 +33,7 @@ typedef struct helio_renderer_desc {
                                        1 looks through the pixel's centre, more are spread over the pixel. */
     helio_strategy strategy;
     helio_weighting weighting;
-    uint32_t pool_length; /* M; default 1024 */
+    uint32_t pool_length; /* M; default 1024, for PRODUCT 256 */
     float brdf_share;     /* default 0.5 */
     bool no_beta;
     bool no_decorrelation; /* all pixels read the same windows of the pools: shows bands */

@@ -84,6 +84,8 @@ typedef enum helio_strategy {
     HELIO_STRATEGY_LIGHT_BRDF,
     HELIO_STRATEGY_FACE, /* the paper: a pool per face, samples spread over faces by flux x beta(normal) */
     HELIO_STRATEGY_FACE_BRDF,
+    HELIO_STRATEGY_PRODUCT, /* past the paper: a pool per bin of normals, each drawn from light x softened cosine */
+    HELIO_STRATEGY_PRODUCT_BRDF,
 } helio_strategy;
 
 HELIO_API const char *helio_strategy_name(helio_strategy strategy);
@@ -98,8 +100,9 @@ typedef struct helio_pools helio_pools;
 
 typedef struct helio_pools_desc {
     helio_strategy strategy;
-    uint32_t length; /* M, samples per face: a power of two, 64..65536; default 1024. LIGHT has one
-                        pool of 6 M. */
+    uint32_t length; /* M, samples per pool: a power of two, 64..65536; default 1024, for PRODUCT 256. LIGHT has
+                        one pool of 6 M. */
+    uint32_t bins;   /* B, for PRODUCT: 6 B^2 bins of normals, 1..32; default 8 */
 } helio_pools_desc;
 
 /* desc may be NULL. Takes the memory; call helio_pools_draw() before gathering. */
@@ -111,7 +114,7 @@ HELIO_API void helio_pools_destroy(helio_pools *pools);
  * tables of frame t - 1. */
 HELIO_API helio_status helio_pools_draw(helio_pools *pools, uint32_t seed, uint32_t pass);
 
-/* Most samples that one gather may take from these pools: M / 8. */
+/* Most samples that one gather may take from these pools: M / 8, for PRODUCT M / 4. */
 HELIO_API uint32_t helio_pools_sample_limit(const helio_pools *pools);
 
 /* How many pools there are: 6, one for each face (FACE), 1 (LIGHT), or 0. And how many samples each holds: M, or 6 M
@@ -160,8 +163,8 @@ typedef struct helio_estimate_desc {
     void *user;                  /* handed to visibility */
 } helio_estimate_desc;
 
-/* Expected counts m and realised counts of the techniques that share N_s: faces 0..5 (FACE), or the whole map in entry
- * 0 (LIGHT), and the BRDF or cosine technique in entry 6. */
+/* Expected counts m and realised counts of the techniques that share N_s: faces 0..5 (FACE), or the whole map (LIGHT)
+ * or the pool of the point's bin (PRODUCT) in entry 0, and the BRDF or cosine technique in entry 6. */
 typedef struct helio_counts {
     float expected[7];
     uint32_t realised[7]; /* sums to N_s exactly, or to 0 if there is no light to sample */

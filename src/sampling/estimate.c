@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The estimator: multi-sample MIS with the balance heuristic over the light techniques (a pool per face, or one) and
- * the surface technique (BRDF or cosine). Every sample contributes L rho cos / sum_k m_k pdf_k, with the expected
- * counts m_k. */
+ * The estimator: multi-sample MIS with the balance heuristic over the light techniques (a pool per face, or one of the
+ * map or of a bin of normals) and the surface technique (BRDF or cosine). Every sample contributes L rho cos / sum_k
+ * m_k pdf_k, with the expected counts m_k. */
 #include "sampling/estimate.h"
 
 #include "core/context.h"
@@ -74,16 +74,16 @@ static void prepare_surface(const point_block *block, uint32_t i, const helio_ma
 
 /* ---- what is known before samples are taken ---- */
 
-/* sum_k m_k pdf_k over the light techniques is expected_in_face x the density of the one face that holds a direction.
+/* sum_k m_k pdf_k over the light techniques has one term: faces share no direction, and other strategies have one pool.
  */
 static void expect_in_faces(gathering *g)
 {
     const helio_pools *pools = g->pools;
     for (uint32_t face = 0; face < CUBE_FACES; face++) {
-        if (pools->parts.light == STRATEGY_LIGHT_WHOLE)
-            g->expected_in_face[face] = g->counts.expected[0] * tables_face_probability(pools->tables, face);
+        if (pools->techniques == CUBE_FACES)
+            g->expected_in_face[face] = g->counts.expected[face];
         else
-            g->expected_in_face[face] = pools->count ? g->counts.expected[face] : 0.0f;
+            g->expected_in_face[face] = pools->techniques ? g->counts.expected[0] : 0.0f;
     }
 }
 
@@ -113,8 +113,9 @@ static void begin(gathering *g, const helio_pools *pools, const helio_shading_po
         g->counts.expected[k] = block->expected[k][i];
         g->counts.realised[k] = block->realised[k][i];
     }
-    for (uint32_t k = 0; k < pools->count; k++)
+    for (uint32_t k = 0; k < pools->techniques; k++)
         g->windows[k] = block->windows[k][i];
+    g->pool = block->pools[0][i];
     if (g->counts.expected[TECHNIQUE_SURFACE] > 0.0f)
         begin_surface_samples(g, point->seed);
 }
@@ -144,10 +145,10 @@ static bool next_block(const gathering *g, const kernel_set *kernels, sample_cur
     uint32_t piece_count = 0, room = BLOCK_SAMPLES;
     block->count = 0;
     while (cursor->technique < TECHNIQUE_SURFACE && room > 0) {
-        uint32_t pool = cursor->technique, first = cursor->taken, count = take_some(g, room, cursor);
+        uint32_t technique = cursor->technique, first = cursor->taken, count = take_some(g, room, cursor);
         room -= count;
         if (count > 0)
-            pieces[piece_count++] = (pool_piece){pool, g->windows[pool] + first, count};
+            pieces[piece_count++] = (pool_piece){technique, g->windows[technique] + first, count};
     }
     kernels->take_pools(g, pieces, piece_count, block);
     if (cursor->technique == TECHNIQUE_SURFACE && room > 0) {
@@ -242,7 +243,7 @@ static void estimate_from_pools(const helio_pools *pools, uint32_t samples, cons
     kernels_of(context_isa(environment->context))->sum_light(pools, samples, block, surfaces, sums);
     for (uint32_t i = 0; i < block->count; i++) {
         results[i].info = (helio_estimate_info){.useful = sums[i].useful};
-        for (uint32_t k = 0; k < pools->count; k++)
+        for (uint32_t k = 0; k < pools->techniques; k++)
             results[i].info.samples += block->realised[k][i];
         for (int c = 0; c < 3; c++)
             results[i].visible[c] = results[i].unoccluded[c] = sums[i].rgb[c] * environment->intensity;

@@ -26,14 +26,15 @@ typedef struct gathering {
     brdf_axes proposal_axes;
     vec3 geometric_normal;
     helio_counts counts;
-    float expected_in_face[CUBE_FACES]; /* sum_k m_k pdf_k over light techniques is this x the face's density */
+    float expected_in_face[CUBE_FACES]; /* sum_k m_k pdf_k over light techniques is this x pools_density() */
+    uint32_t pool;                      /* that technique 0 reads: the bin's, for STRATEGY_LIGHT_BINS */
     uint32_t windows[CUBE_FACES];
     uint32_t surface_seed;
 } gathering;
 
-/* Samples first ... first + count - 1 of a pool. */
+/* Samples first ... first + count - 1, in the arrays of all pools, that a technique takes. */
 typedef struct pool_piece {
-    uint32_t pool, first, count;
+    uint32_t technique, first, count;
 } pool_piece;
 
 /* Samples side by side, whatever technique took them, and what each contributes. */

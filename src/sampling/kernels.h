@@ -9,6 +9,7 @@
 
 #include "core/isa.h"
 #include "sampling/gathering.h"
+#include "sampling/normal_bins.h"
 #include "sampling/point_block.h"
 #include "sampling/tables.h"
 
@@ -31,9 +32,19 @@ typedef struct kernel_set {
      * alone. sums: [size + 1], or NULL if only the total is wanted. The same bits with every instruction set. */
     row_sum (*sum_row)(const float *rgb, const float *solid_angles, uint32_t size, uint32_t *sums);
 
-    /* Draws samples first ... first + count - 1 of a pool that is not black. seed: of the pool. The same bits with
-     * every instruction set. */
+    /* Prefix sums of the weights that a bin of normals gives to the tiles. sums: [tiles + 1]. Returns their total. The
+     * same bits with every instruction set. */
+    uint32_t (*weigh_tiles)(const tiles *t, const normal_bin *bin, uint32_t *sums);
+
+    /* Draws samples first ... first + count - 1 of the pool of a face or the map that is not black. seed: of the pool.
+     * The same bits with every instruction set. */
     void (*draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
+
+    /* Draws the list of a tile anew, unless it is empty. seed: of the tile. Draws samples first ... first + count - 1
+     * of the pool of a bin that is not black from the lists of the tiles. seed: of the pool. The same bits with every
+     * instruction set. */
+    void (*draw_tile)(normal_bins *bins, const helio_tables *tables, uint32_t position, uint32_t seed);
+    void (*draw_bin)(helio_pools *pools, uint32_t bin, uint32_t first, uint32_t count, uint32_t seed);
 
     /* Prepares points for their samples: turns their directions to the map's space, lifts views that graze, and fills
      * in counts and windows. The same bits with every instruction set. */
@@ -91,7 +102,10 @@ _Static_assert(HELIO_LANES <= POOL_PADDING && BLOCK_SAMPLES % HELIO_LANES == 0 &
                "kernels read and write whole registers, also past the last sample");
 
 row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, uint32_t size, uint32_t *sums);
+uint32_t KERNEL(weigh_tiles)(const tiles *t, const normal_bin *bin, uint32_t *sums);
 void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
+void KERNEL(draw_tile)(normal_bins *bins, const helio_tables *tables, uint32_t position, uint32_t seed);
+void KERNEL(draw_bin)(helio_pools *pools, uint32_t bin, uint32_t first, uint32_t count, uint32_t seed);
 void KERNEL(prepare_points)(const helio_pools *pools, const helio_estimate_desc *desc, point_block *block);
 void KERNEL(round_counts)(uint32_t samples, point_block *block);
 void KERNEL(sum_light)(const helio_pools *pools, uint32_t samples, const point_block *block, const brdf *surfaces,

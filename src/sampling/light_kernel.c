@@ -82,15 +82,15 @@ static inline __attribute__((always_inline)) void copy_window(const pool_arrays 
 }
 
 /* Samples first ... of all that a point takes, as many as fit, counted through all pools. */
-static inline __attribute__((always_inline)) void take_samples(const pool_arrays *arrays, uint32_t pool_count,
+static inline __attribute__((always_inline)) void take_samples(const pool_arrays *arrays, uint32_t technique_count,
                                                                const point_block *points, uint32_t index,
                                                                uint32_t first, light_block *block)
 {
     uint32_t taken = 0;
-    for (uint32_t pool = 0; pool < pool_count; pool++) {
-        const uint32_t all = points->realised[pool][index], skipped = first < all ? first : all;
+    for (uint32_t k = 0; k < technique_count; k++) {
+        const uint32_t all = points->realised[k][index], skipped = first < all ? first : all;
         const uint32_t rest = all - skipped, room = BLOCK_SAMPLES - taken, count = rest < room ? rest : room;
-        copy_window(arrays, points->windows[pool][index] + skipped, count, points->scales[pool][index], taken, block);
+        copy_window(arrays, points->windows[k][index] + skipped, count, points->scales[k][index], taken, block);
         taken += count;
         first -= skipped;
     }
@@ -194,7 +194,7 @@ static inline __attribute__((always_inline)) block_sum sum_point(light_form form
     lobe_sums sums = {0};
     uint32_t done = 0;
     do {
-        take_samples(&arrays, pools->count, points, index, done, &block);
+        take_samples(&arrays, pools->techniques, points, index, done, &block);
         find_lobes(form, surface, geometric_normal, &block);
         add_light(form, surface, &block, &sums);
         done += block.count;

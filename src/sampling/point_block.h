@@ -27,6 +27,7 @@ typedef struct point_block {
     alignas(64) float expected[TECHNIQUES][POINT_BLOCK];
     alignas(64) float rounding[POINT_BLOCK]; /* where systematic rounding starts, in [0, 1) */
     alignas(64) uint32_t realised[TECHNIQUES][POINT_BLOCK];
+    alignas(64) uint32_t pools[CUBE_FACES][POINT_BLOCK];   /* that each light technique reads */
     alignas(64) uint32_t windows[CUBE_FACES][POINT_BLOCK]; /* first sample that is read, in the arrays of all pools */
     alignas(64) float scales[CUBE_FACES][POINT_BLOCK];     /* 1 / expected, or 0 for pools that are not read */
 } point_block;

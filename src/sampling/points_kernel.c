@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* Streams of random numbers of a point; STREAM_SURFACE belongs to gathering.h. */
-enum { STREAM_ROUNDING = 1, STREAM_WINDOW = 3 };
+enum { STREAM_ROUNDING = 1, STREAM_WINDOW = 3, STREAM_BIN = 4 };
 
 static uint32_t padded(const point_block *block)
 {
@@ -35,6 +35,27 @@ static void lift_views(point_block *block)
         vec3 normal = point_vector(&block->normal, i), view = point_vector(&block->view, i);
         if (!(dot(normal, view) >= BRDF_LEAST_VIEW_COSINE))
             point_vector_put(&block->view, i, brdf_lift_view(normal, view));
+    }
+}
+
+/* ---- pools ---- */
+
+/* Every technique has a pool of its own, except that the only one of STRATEGY_LIGHT_BINS reads that of the bin which
+ * the normal falls into when shaken. */
+static void choose_pools(const helio_pools *pools, point_block *block)
+{
+    const uint32_t count = padded(block);
+    for (uint32_t k = 0; k < pools->techniques; k++)
+        for (uint32_t i = 0; i < count; i++)
+            block->pools[k][i] = k;
+    if (pools->bins == NULL)
+        return;
+    const normal_bins bins = *pools->bins;
+#pragma omp simd
+    for (uint32_t i = 0; i < count; i++) {
+        const vec3 normal = {block->normal.x[i], block->normal.y[i], block->normal.z[i]};
+        uint32_t random = hash_combine(block->seed[i], STREAM_BIN);
+        block->pools[0][i] = normal_bins_cell(bins.per_edge, normal_bins_shaken(&bins, normal, random));
     }
 }
 
@@ -65,8 +86,11 @@ static void weigh_pools(const helio_pools *pools, const point_block *block, bool
 {
     const helio_tables *tables = pools->tables;
     const uint32_t count = padded(block);
-    for (uint32_t i = 0; i < count; i++)
-        worths->total[i] = worths->of_pool[0][i] = tables->faces[CUBE_FACES] != 0 ? 1.0 : 0.0;
+    for (uint32_t i = 0; i < count; i++) {
+        bool lit =
+            pools->bins != NULL ? pools->bins->shares[block->pools[0][i]] > 0.0f : tables->faces[CUBE_FACES] != 0;
+        worths->total[i] = worths->of_pool[0][i] = lit ? 1.0 : 0.0;
+    }
     if (pools->parts.light != STRATEGY_LIGHT_FACES)
         return;
     for (uint32_t i = 0; i < count; i++)
@@ -88,13 +112,13 @@ static void expect_counts(const helio_pools *pools, const helio_estimate_desc *d
 {
     const uint32_t count = padded(block);
     const float samples = (float)desc->samples;
-    const float by_surface = pools->count == 0                               ? samples
+    const float by_surface = pools->techniques == 0                          ? samples
                              : pools->parts.surface != STRATEGY_SURFACE_NONE ? samples * desc->brdf_share
                                                                              : 0.0f;
     pool_worths worths;
     alignas(64) double shares[POINT_BLOCK];
     memset(block->expected, 0, sizeof block->expected);
-    if (pools->count > 0)
+    if (pools->techniques > 0)
         weigh_pools(pools, block, desc->no_beta, &worths);
     else
         for (uint32_t i = 0; i < count; i++)
@@ -105,7 +129,7 @@ static void expect_counts(const helio_pools *pools, const helio_estimate_desc *d
         shares[i] = (lit ? (double)(samples - by_surface) : 0.0) / (lit ? worths.total[i] : 1.0);
         block->expected[TECHNIQUE_SURFACE][i] = lit ? by_surface : 0.0f;
     }
-    for (uint32_t k = 0; k < pools->count; k++)
+    for (uint32_t k = 0; k < pools->techniques; k++)
         expect(count, worths.of_pool[k], shares, block->expected[k]);
 }
 
@@ -143,16 +167,16 @@ void KERNEL(round_counts)(uint32_t samples, point_block *block)
 
 /* ---- windows ---- */
 
-static void choose_windows(const helio_pools *pools, uint32_t pool, point_block *block)
+static void choose_windows(const helio_pools *pools, uint32_t technique, point_block *block)
 {
-    const uint32_t count = padded(block), length = pools->pool_length, start = pool * length;
+    const uint32_t count = padded(block), length = pools->pool_length;
 #pragma omp simd
     for (uint32_t i = 0; i < count; i++) {
+        uint32_t pool = block->pools[technique][i], realised = block->realised[technique][i];
         uint32_t choice = hash_combine(hash_combine(block->seed[i], STREAM_WINDOW), pool);
-        uint32_t realised = block->realised[pool][i];
-        float expected = block->expected[pool][i];
-        block->windows[pool][i] = start + pools_window(length, realised, choice);
-        block->scales[pool][i] = (realised > 0 ? 1.0f : 0.0f) / (realised > 0 ? expected : 1.0f);
+        float expected = block->expected[technique][i];
+        block->windows[technique][i] = pool * length + pools_window(length, realised, choice);
+        block->scales[technique][i] = (realised > 0 ? 1.0f : 0.0f) / (realised > 0 ? expected : 1.0f);
     }
 }
 
@@ -166,11 +190,12 @@ void KERNEL(prepare_points)(const helio_pools *pools, const helio_estimate_desc 
     turn(environment, count, &block->geometric_normal);
     turn(environment, count, &block->view);
     lift_views(block);
+    choose_pools(pools, block);
     expect_counts(pools, desc, block);
 #pragma omp simd
     for (uint32_t i = 0; i < count; i++)
         block->rounding[i] = unit_float(hash_combine(block->seed[i], STREAM_ROUNDING));
     KERNEL(round_counts)(desc->samples, block);
-    for (uint32_t k = 0; k < pools->count; k++)
+    for (uint32_t k = 0; k < pools->techniques; k++)
         choose_windows(pools, k, block);
 }

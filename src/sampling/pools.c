@@ -8,18 +8,24 @@
 
 #include <string.h>
 
-enum { DEFAULT_LENGTH = 1024, LEAST_LENGTH = 64, GREATEST_LENGTH = 65536, PIECE = 256 };
+enum { DEFAULT_LENGTH = 1024, DEFAULT_LENGTH_OF_BIN = 256, LEAST_LENGTH = 64, GREATEST_LENGTH = 65536, PIECE = 256 };
 
 static helio_status resolve_desc(const helio_pools_desc *given, helio_pools_desc *desc)
 {
     *desc = given ? *given : (helio_pools_desc){0};
+    HELIO_TRY(strategy_check(desc->strategy));
+    desc->strategy = helio_strategy_resolve(desc->strategy);
     if (desc->length == 0)
-        desc->length = DEFAULT_LENGTH;
+        desc->length =
+            strategy_divide(desc->strategy).light == STRATEGY_LIGHT_BINS ? DEFAULT_LENGTH_OF_BIN : DEFAULT_LENGTH;
+    if (desc->bins == 0)
+        desc->bins = NORMAL_BINS_DEFAULT;
     if (desc->length < LEAST_LENGTH || desc->length > GREATEST_LENGTH || (desc->length & (desc->length - 1)) != 0)
         return fail(HELIO_ERR_ARGUMENT, "a pool of %u samples cannot be made; use a power of two from %d to %d",
                     desc->length, LEAST_LENGTH, GREATEST_LENGTH);
-    HELIO_TRY(strategy_check(desc->strategy));
-    desc->strategy = helio_strategy_resolve(desc->strategy);
+    if (desc->bins > NORMAL_BINS_MOST)
+        return fail(HELIO_ERR_ARGUMENT, "%u x %u bins of normals on each face are too many; use at most %d x %d",
+                    desc->bins, desc->bins, NORMAL_BINS_MOST, NORMAL_BINS_MOST);
     return HELIO_OK;
 }
 
@@ -37,6 +43,23 @@ static helio_status allocate_arrays(helio_pools *pools)
     return HELIO_OK;
 }
 
+static void choose_sizes(helio_pools *pools, const helio_pools_desc *desc)
+{
+    pools->length = pools->pool_length = desc->length;
+    switch (pools->parts.light) {
+    case STRATEGY_LIGHT_NONE: break;
+    case STRATEGY_LIGHT_WHOLE:
+        pools->count = pools->techniques = 1;
+        pools->pool_length = CUBE_FACES * desc->length;
+        break;
+    case STRATEGY_LIGHT_FACES: pools->count = pools->techniques = CUBE_FACES; break;
+    case STRATEGY_LIGHT_BINS:
+        pools->count = CUBE_FACES * desc->bins * desc->bins;
+        pools->techniques = 1;
+        break;
+    }
+}
+
 helio_status helio_pools_create(helio_tables *tables, const helio_pools_desc *given, helio_pools **out)
 {
     if (out != NULL)
@@ -51,10 +74,11 @@ helio_status helio_pools_create(helio_tables *tables, const helio_pools_desc *gi
     pools->tables = tables;
     pools->strategy = desc.strategy;
     pools->parts = strategy_divide(desc.strategy);
-    pools->length = desc.length;
-    pools->count = pools->parts.light == STRATEGY_LIGHT_FACES ? CUBE_FACES : pools->parts.light ? 1 : 0;
-    pools->pool_length = pools->parts.light == STRATEGY_LIGHT_WHOLE ? CUBE_FACES * desc.length : desc.length;
+    choose_sizes(pools, &desc);
     helio_status status = allocate_arrays(pools);
+    if (status == HELIO_OK && pools->parts.light == STRATEGY_LIGHT_BINS)
+        status =
+            normal_bins_create(tables->environment->context, desc.bins, tables->size, pools->pool_length, &pools->bins);
     if (status != HELIO_OK) {
         helio_pools_destroy(pools);
         return status;
@@ -68,6 +92,7 @@ void helio_pools_destroy(helio_pools *pools)
     if (pools == NULL)
         return;
     helio_context *context = pools->tables->environment->context;
+    normal_bins_destroy(pools->bins);
     context_release(context, pools->third_dimension);
     context_release(context, pools->samples);
     context_release(context, pools);
@@ -75,13 +100,14 @@ void helio_pools_destroy(helio_pools *pools)
 
 uint32_t helio_pools_sample_limit(const helio_pools *pools)
 {
-    return pools->length / POOL_SHARE;
+    return pools->length / (pools->parts.light == STRATEGY_LIGHT_BINS ? POOL_SHARE_OF_BIN : POOL_SHARE);
 }
 
 /* ---- drawing ---- */
 
 typedef struct drawing {
     helio_pools *pools;
+    void (*draw)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
     uint32_t seed;
 } drawing;
 
@@ -92,6 +118,8 @@ static uint32_t pieces_per_pool(const helio_pools *pools)
 
 static bool is_black(const helio_pools *pools, uint32_t pool)
 {
+    if (pools->bins != NULL)
+        return pools->bins->shares[pool] == 0.0f;
     if (pools->parts.light == STRATEGY_LIGHT_WHOLE)
         return pools->tables->faces[CUBE_FACES] == 0;
     return pools->tables->marginals[(size_t)pool * (pools->tables->size + 1) + pools->tables->size] == 0;
@@ -114,8 +142,7 @@ static void draw_piece(void *data, size_t piece)
     if (is_black(pools, pool))
         clear_samples(pools, pool, first, count);
     else
-        kernels_of(context_isa(pools->tables->environment->context))
-            ->draw_pool(pools, pool, first, count, hash_combine(work->seed, pool));
+        work->draw(pools, pool, first, count, hash_combine(work->seed, pool));
 }
 
 helio_status helio_pools_draw(helio_pools *pools, uint32_t seed, uint32_t pass)
@@ -127,7 +154,13 @@ helio_status helio_pools_draw(helio_pools *pools, uint32_t seed, uint32_t pass)
         return fail(HELIO_ERR_ARGUMENT,
                     "the tables are those of frame %llu but the environment is at frame %llu; call helio_tables_update",
                     (unsigned long long)pools->tables->frame, (unsigned long long)environment->frame);
-    drawing work = {.pools = pools, .seed = hash_combine(seed, pass)};
+    const kernel_set *kernels = kernels_of(context_isa(environment->context));
+    drawing work = {.pools = pools, .draw = kernels->draw_pool, .seed = hash_combine(seed, pass)};
+    if (pools->bins != NULL) {
+        work.draw = kernels->draw_bin;
+        normal_bins_update(pools->bins, pools->tables);
+        normal_bins_draw_lists(pools->bins, pools->tables, hash_combine(work.seed, pools->count));
+    }
     context_parallel_for(environment->context, (size_t)pools->count * pieces_per_pool(pools), draw_piece, &work);
     pools->frame = environment->frame;
     return HELIO_OK;

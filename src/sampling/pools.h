@@ -4,12 +4,14 @@
 #define HELIOSTAT_SRC_POOLS_H
 
 #include "sampling/elementary.h"
+#include "sampling/normal_bins.h"
 #include "sampling/strategy.h"
 #include "sampling/tables.h"
 
 enum {
-    POOL_SHARE = 8,   /* a point takes at most one eighth of a pool, so that its neighbours have windows of their own */
-    POOL_PADDING = 16 /* floats that a kernel may read past the end: the lanes of the widest register */
+    POOL_SHARE = 8, /* a point takes at most one eighth of a pool, so that its neighbours have windows of their own */
+    POOL_SHARE_OF_BIN = 4, /* ... one fourth of the pool of a bin, as its neighbours mostly read other pools as well */
+    POOL_PADDING = 16      /* floats that a kernel may read past the end: the lanes of the widest register */
 };
 
 /* The numbers of a sample, each in an array of its own. */
@@ -35,8 +37,10 @@ struct helio_pools {
     helio_strategy strategy; /* never AUTO */
     strategy_parts parts;
     uint32_t length;      /* M */
-    uint32_t count;       /* pools: 6, 1 or 0 */
+    uint32_t count;       /* pools: 6, 1, 6 B^2 or 0 */
+    uint32_t techniques;  /* pools of which a point reads: 6, 1 or 0 */
     uint32_t pool_length; /* samples in each: M, or 6 M where there is one pool */
+    normal_bins *bins;    /* what the pools of STRATEGY_LIGHT_BINS are drawn from; NULL for others */
     uint64_t frame;       /* of the environment, when drawn */
     /* [POOL_ARRAYS], arrays `stride` floats apart: [count][pool_length] each, and POOL_PADDING more that may be read.
      * Directions in the map's space, radiance, density given the pool (1/sr). */
@@ -49,6 +53,18 @@ struct helio_pools {
 static inline float *pools_array(const helio_pools *pools, uint32_t pool, enum sample_array array)
 {
     return pools->samples + (size_t)array * pools->stride + (size_t)pool * pools->pool_length;
+}
+
+/* Density, 1/sr, with which a pool draws a direction; for pools of faces it must be the pool's own. Drawing and MIS
+ * both use this. */
+static inline float pools_density(const helio_pools *pools, uint32_t pool, const face_place *at)
+{
+    if (pools->bins != NULL)
+        return normal_bins_density(pools->bins, pools->tables, pool, at);
+    face_table table = tables_face(pools->tables, at->face);
+    float density = face_table_density(&table, at->row, at->column, at->u, at->v);
+    return pools->parts.light == STRATEGY_LIGHT_WHOLE ? density * tables_face_probability(pools->tables, at->face)
+                                                      : density;
 }
 
 /* First sample of the window from which a point reads `wanted` samples, at least 1: windows are aligned to powers of

@@ -12,7 +12,7 @@ enum { GROUP = 32 }; /* samples drawn together */
 /* Searches that go on together. fraction is that of tables_invert(): in x, out where x lies inside of the cell. */
 typedef struct search_group {
     uint32_t fraction[GROUP];
-    const uint32_t *sums[GROUP]; /* [length + 1] each */
+    const uint32_t *sums[GROUP]; /* [length + 1] each, perhaps a piece of longer ones */
     uint32_t cell[GROUP];
 } search_group;
 
@@ -21,7 +21,8 @@ static void invert_group(search_group *group, uint32_t count, uint32_t length)
 {
     uint32_t whole[GROUP], highest = 1;
     for (uint32_t i = 0; i < count; i++) {
-        whole[i] = (uint32_t)(((uint64_t)group->fraction[i] * group->sums[i][length]) >> 32);
+        const uint32_t *sums = group->sums[i], total = sums[length] - sums[0];
+        whole[i] = sums[0] + (uint32_t)(((uint64_t)group->fraction[i] * total) >> 32);
         group->cell[i] = 0;
     }
     while (highest < length)
@@ -37,12 +38,57 @@ static void invert_group(search_group *group, uint32_t count, uint32_t length)
         group->fraction[i] = tables_fraction_within(group->sums[i], length, group->cell[i], group->fraction[i]);
 }
 
-/* The face of each sample: the pool's, or for the whole map by the sums over faces, which leaves the row's fraction. */
-static void choose_faces(const helio_pools *pools, uint32_t pool, uint32_t count, uint32_t *fractions, uint32_t *faces)
+/* A group of samples on its way from points to texels. */
+typedef struct sample_group {
+    uint32_t count;
+    uint32_t faces[GROUP], rows[GROUP], first_columns[GROUP];
+    search_group row, column;
+    face_place places[GROUP];
+} sample_group;
+
+/* Points first ... of a pool: x for the columns, y for the rows. */
+static void choose_points(uint32_t first, uint32_t seed, sample_group *group)
 {
-    bool whole = pools->parts.light == STRATEGY_LIGHT_WHOLE;
-    for (uint32_t i = 0; i < count; i++)
-        faces[i] = whole ? tables_invert(pools->tables->faces, CUBE_FACES, fractions[i], &fractions[i]) : pool;
+    const uint32_t seed_x = dimension_seed(seed, 0), seed_y = dimension_seed(seed, 1);
+#pragma omp simd
+    for (uint32_t i = 0; i < group->count; i++) {
+        group->column.fraction[i] = owen_scramble_reversed(first + i, seed_x);
+        group->row.fraction[i] = owen_scramble_reversed(pascal_transform(first + i), seed_y);
+    }
+}
+
+/* The row of each sample in the table of its face: the pool's, or for the whole map by the sums over faces, which
+ * leaves the row's fraction. */
+static void choose_rows(const helio_pools *pools, uint32_t pool, sample_group *group)
+{
+    const helio_tables *tables = pools->tables;
+    const bool whole = pools->parts.light == STRATEGY_LIGHT_WHOLE;
+    for (uint32_t i = 0; i < group->count; i++) {
+        uint32_t *fraction = &group->row.fraction[i];
+        group->faces[i] = whole ? tables_invert(tables->faces, CUBE_FACES, *fraction, fraction) : pool;
+        group->row.sums[i] = tables_face(tables, group->faces[i]).marginal;
+    }
+    invert_group(&group->row, group->count, tables->size);
+    for (uint32_t i = 0; i < group->count; i++) {
+        group->rows[i] = group->row.cell[i];
+        group->first_columns[i] = 0;
+    }
+}
+
+/* The texel in each row, among `columns` of them, and the place in it. */
+static void choose_texels(const helio_tables *tables, uint32_t columns, sample_group *group)
+{
+    const uint32_t size = tables->size;
+    for (uint32_t i = 0; i < group->count; i++)
+        group->column.sums[i] =
+            tables_face(tables, group->faces[i]).rows + (size_t)group->rows[i] * (size + 1) + group->first_columns[i];
+    invert_group(&group->column, group->count, columns);
+    for (uint32_t i = 0; i < group->count; i++) {
+        group->places[i] = tables_place(size, group->faces[i], group->rows[i], group->row.fraction[i],
+                                        group->first_columns[i] + group->column.cell[i], group->column.fraction[i]);
+        const face_place *at = &group->places[i];
+        __builtin_prefetch(environment_texel(tables->environment, at->face, at->row, at->column));
+    }
 }
 
 /* Finite, so that times 0 it is 0. */
@@ -67,41 +113,154 @@ static void store_sample(helio_pools *pools, uint32_t pool, uint32_t index, cons
     to[SAMPLE_WEIGHTED_BLUE * pools->stride] = weighted(sample->radiance[2], sample->density);
 }
 
-static void draw_group(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed)
+void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed)
 {
-    const helio_tables *tables = pools->tables;
-    const uint32_t size = tables->size, seed_x = dimension_seed(seed, 0), seed_y = dimension_seed(seed, 1);
-    search_group rows, columns;
-    uint32_t faces[GROUP];
-#pragma omp simd
-    for (uint32_t i = 0; i < count; i++) {
-        columns.fraction[i] = owen_scramble_reversed(first + i, seed_x);
-        rows.fraction[i] = owen_scramble_reversed(pascal_transform(first + i), seed_y);
-    }
-    choose_faces(pools, pool, count, rows.fraction, faces);
-    for (uint32_t i = 0; i < count; i++)
-        rows.sums[i] = tables_face(tables, faces[i]).marginal;
-    invert_group(&rows, count, size);
-    for (uint32_t i = 0; i < count; i++)
-        columns.sums[i] = tables_face(tables, faces[i]).rows + (size_t)rows.cell[i] * (size + 1);
-    invert_group(&columns, count, size);
-    for (uint32_t i = 0; i < count; i++)
-        __builtin_prefetch(environment_texel(tables->environment, faces[i], rows.cell[i], columns.cell[i]));
-    for (uint32_t i = 0; i < count; i++) {
-        helio_table_sample sample;
-        tables_sample_at(tables, faces[i], rows.cell[i], rows.fraction[i], columns.cell[i], columns.fraction[i],
-                         &sample);
-        if (pools->parts.light == STRATEGY_LIGHT_WHOLE)
-            sample.density *= tables_face_probability(tables, faces[i]);
-        store_sample(pools, pool, first + i, &sample);
+    for (uint32_t done = 0; done < count; done += GROUP) {
+        sample_group group = {.count = count - done < GROUP ? count - done : GROUP};
+        choose_points(first + done, seed, &group);
+        choose_rows(pools, pool, &group);
+        choose_texels(pools->tables, pools->tables->size, &group);
+        for (uint32_t i = 0; i < group.count; i++) {
+            helio_table_sample sample;
+            tables_sample_at(pools->tables, &group.places[i], pools_density(pools, pool, &group.places[i]), &sample);
+            store_sample(pools, pool, first + done + i, &sample);
+        }
     }
 }
 
-void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed)
+/* ---- samples of tiles, and pools of bins made of them ---- */
+
+/* Points first ... of `length`: one in each of that many strata of y, in their order. */
+static void choose_strata(uint32_t first, uint32_t length, uint32_t seed, sample_group *group)
 {
-    for (uint32_t done = 0; done < count; done += GROUP)
-        draw_group(pools, pool, first + done, count - done < GROUP ? count - done : GROUP, seed);
+    const uint32_t seed_x = dimension_seed(seed, 0), seed_y = dimension_seed(seed, 1);
+    for (uint32_t i = 0; i < group->count; i++) {
+        group->column.fraction[i] = owen_scramble_reversed(first + i, seed_x);
+        uint64_t y = ((uint64_t)(first + i) << 32) + hash_combine(seed_y, first + i);
+        group->row.fraction[i] = (uint32_t)(y / length);
+    }
 }
+
+/* The row of each sample in a tile, whose number of columns is returned. */
+static uint32_t choose_rows_of_tile(const tiles *t, uint32_t position, sample_group *group)
+{
+    const uint32_t edge = t->per_edge, grid = t->grid[position], row = grid / edge % edge, column = grid % edge;
+    for (uint32_t i = 0; i < group->count; i++)
+        group->row.sums[i] = t->sums + (size_t)position * t->stride;
+    invert_group(&group->row, group->count, t->starts[row + 1] - t->starts[row]);
+    for (uint32_t i = 0; i < group->count; i++) {
+        group->faces[i] = grid / (edge * edge);
+        group->rows[i] = t->starts[row] + group->row.cell[i];
+        group->first_columns[i] = t->starts[column];
+    }
+    return t->starts[column + 1] - t->starts[column];
+}
+
+void KERNEL(draw_tile)(normal_bins *bins, const helio_tables *tables, uint32_t position, uint32_t seed)
+{
+    const uint32_t start = bins->list_starts[position], length = bins->list_starts[position + 1] - start;
+    for (uint32_t done = 0; done < length; done += GROUP) {
+        sample_group group = {.count = length - done < GROUP ? length - done : GROUP};
+        choose_strata(done, length, seed, &group);
+        choose_texels(tables, choose_rows_of_tile(bins->tiles, position, &group), &group);
+        for (uint32_t i = 0; i < group.count; i++) {
+            helio_table_sample sample;
+            tables_sample_at(tables, &group.places[i], tiles_density(bins->tiles, tables, &group.places[i]), &sample);
+            bins->listed[start + done + i] = (listed_sample){
+                .direction = {sample.direction[0], sample.direction[1], sample.direction[2]},
+                .radiance = {sample.radiance[0], sample.radiance[1], sample.radiance[2]},
+                .weighted = {weighted(sample.radiance[0], sample.density), weighted(sample.radiance[1], sample.density),
+                             weighted(sample.radiance[2], sample.density)},
+                .density = sample.density};
+        }
+    }
+}
+
+static inline float finite_product(float a, float b)
+{
+    float product = a * b;
+    return product < FLT_MAX ? product : FLT_MAX;
+}
+
+/* The same as store_sample(), for a sample that a tile holds, and the probability of the tile. */
+static void store_listed(helio_pools *pools, uint32_t pool, uint32_t index, const listed_sample *sample,
+                         float probability)
+{
+    float *to = pools_array(pools, pool, SAMPLE_X) + index;
+    const float scale = 1.0f / probability;
+    to[SAMPLE_X * pools->stride] = sample->direction[0];
+    to[SAMPLE_Y * pools->stride] = sample->direction[1];
+    to[SAMPLE_Z * pools->stride] = sample->direction[2];
+    to[SAMPLE_RED * pools->stride] = sample->radiance[0];
+    to[SAMPLE_GREEN * pools->stride] = sample->radiance[1];
+    to[SAMPLE_BLUE * pools->stride] = sample->radiance[2];
+    to[SAMPLE_DENSITY * pools->stride] = probability * sample->density;
+    to[SAMPLE_WEIGHTED_RED * pools->stride] = finite_product(sample->weighted[0], scale);
+    to[SAMPLE_WEIGHTED_GREEN * pools->stride] = finite_product(sample->weighted[1], scale);
+    to[SAMPLE_WEIGHTED_BLUE * pools->stride] = finite_product(sample->weighted[2], scale);
+}
+
+/* Samples of a bin on their way to the lists. */
+typedef struct bin_group {
+    double place[GROUP]; /* in the bin's sums */
+    int32_t position[GROUP], element[GROUP];
+} bin_group;
+
+/* As invert_group(), but all in the same sums, which are below 2^31: a search for each lane. */
+static void find_tiles(const uint32_t *sums, int32_t length, bin_group *group)
+{
+    const int32_t *signed_sums = (const int32_t *)sums;
+    int32_t highest = 1;
+    while (highest < length)
+        highest *= 2;
+    for (int32_t i = 0; i < GROUP; i++)
+        group->position[i] = 0;
+    for (int32_t step = highest / 2; step > 0; step /= 2)
+#pragma omp simd
+        for (int32_t i = 0; i < GROUP; i++) {
+            int32_t next = group->position[i] + step;
+            next = next < length ? next : length;
+            group->position[i] += signed_sums[next] <= (int32_t)group->place[i] ? step : 0;
+        }
+}
+
+/* Points first ... of a bin's pool, and the listed sample that each picks: what is left of the point in its tile counts
+ * through the list. In double, which holds these sums with 22 bits to spare. */
+static void choose_listed(const normal_bins *bins, uint32_t bin, uint32_t first, uint32_t seed_x, bin_group *group)
+{
+    const uint32_t *sums = normal_bins_sums(bins, bin), *starts = bins->list_starts;
+    const double scale = (double)sums[bins->tiles->count] * 0x1p-31;
+#pragma omp simd
+    for (int32_t i = 0; i < GROUP; i++) {
+        uint32_t x = owen_scramble_reversed(first + (uint32_t)i, seed_x);
+        group->place[i] = (double)(int32_t)(x >> 1) * scale;
+    }
+    find_tiles(sums, (int32_t)bins->tiles->count, group);
+    for (int32_t i = 0; i < GROUP; i++) {
+        const int32_t position = group->position[i];
+        const uint32_t length = starts[position + 1] - starts[position];
+        const double within =
+            (group->place[i] - (double)sums[position]) / (double)(sums[position + 1] - sums[position]);
+        const uint32_t element = (uint32_t)(int32_t)(within * (double)length);
+        group->element[i] = (int32_t)(starts[position] + (element < length ? element : length - 1));
+    }
+}
+
+void KERNEL(draw_bin)(helio_pools *pools, uint32_t bin, uint32_t first, uint32_t count, uint32_t seed)
+{
+    const normal_bins *bins = pools->bins;
+    const uint32_t seed_x = dimension_seed(seed, 0);
+    for (uint32_t done = 0; done < count; done += GROUP) {
+        const uint32_t some = count - done < GROUP ? count - done : GROUP;
+        bin_group group;
+        choose_listed(bins, bin, first + done, seed_x, &group);
+        for (uint32_t i = 0; i < some; i++)
+            store_listed(pools, bin, first + done + i, &bins->listed[group.element[i]],
+                         normal_bins_probability(bins, bin, (uint32_t)group.position[i]));
+    }
+}
+
+/* ---- taking samples ---- */
 
 /* Whole registers, past the last sample too: what is too much is overwritten by the next samples, or never read. */
 void KERNEL(take_pools)(const gathering *g, const pool_piece *pieces, uint32_t piece_count, sample_block *block)
@@ -110,7 +269,7 @@ void KERNEL(take_pools)(const gathering *g, const pool_piece *pieces, uint32_t p
     const float *const samples = g->pools->samples;
     float *restrict to = block->samples[SAMPLE_X] + block->count;
     for (const pool_piece *piece = pieces; piece < pieces + piece_count; piece++) {
-        const float expected = g->counts.expected[piece->pool];
+        const float expected = g->counts.expected[piece->technique];
         const float *from = samples + piece->first;
         for (uint32_t chunk = 0; chunk < piece->count; chunk += HELIO_LANES) {
 #pragma omp simd

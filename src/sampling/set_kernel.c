@@ -5,7 +5,10 @@
 
 const kernel_set KERNEL(kernels) = {
     .sum_row = KERNEL(sum_row),
+    .weigh_tiles = KERNEL(weigh_tiles),
     .draw_pool = KERNEL(draw_pool),
+    .draw_tile = KERNEL(draw_tile),
+    .draw_bin = KERNEL(draw_bin),
     .prepare_points = KERNEL(prepare_points),
     .round_counts = KERNEL(round_counts),
     .sum_light = KERNEL(sum_light),

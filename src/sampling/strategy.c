@@ -12,6 +12,8 @@ static const char *const NAMES[] = {
     [HELIO_STRATEGY_LIGHT_BRDF] = "light+brdf",
     [HELIO_STRATEGY_FACE] = "face",
     [HELIO_STRATEGY_FACE_BRDF] = "face+brdf",
+    [HELIO_STRATEGY_PRODUCT] = "product",
+    [HELIO_STRATEGY_PRODUCT_BRDF] = "product+brdf",
 };
 static const name_list STRATEGIES = NAME_LIST("strategy", NAMES);
 
@@ -22,6 +24,8 @@ static const strategy_parts PARTS[] = {
     [HELIO_STRATEGY_LIGHT_BRDF] = {STRATEGY_LIGHT_WHOLE, STRATEGY_SURFACE_BRDF},
     [HELIO_STRATEGY_FACE] = {STRATEGY_LIGHT_FACES, STRATEGY_SURFACE_NONE},
     [HELIO_STRATEGY_FACE_BRDF] = {STRATEGY_LIGHT_FACES, STRATEGY_SURFACE_BRDF},
+    [HELIO_STRATEGY_PRODUCT] = {STRATEGY_LIGHT_BINS, STRATEGY_SURFACE_NONE},
+    [HELIO_STRATEGY_PRODUCT_BRDF] = {STRATEGY_LIGHT_BINS, STRATEGY_SURFACE_BRDF},
 };
 
 const char *helio_strategy_name(helio_strategy strategy)

@@ -11,6 +11,7 @@ typedef enum strategy_light {
     STRATEGY_LIGHT_NONE = 0,
     STRATEGY_LIGHT_WHOLE, /* one pool over the map */
     STRATEGY_LIGHT_FACES, /* one pool per face */
+    STRATEGY_LIGHT_BINS,  /* one pool per bin of normals */
 } strategy_light;
 
 typedef enum strategy_surface {

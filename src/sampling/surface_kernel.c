@@ -64,14 +64,13 @@ static void look_up(const gathering *g, uint32_t count, const texel_list *texels
 {
     float(*to)[BLOCK_STRIDE] = block->samples;
     for (uint32_t i = 0, k = block->count; i < count; i++, k++) {
-        uint32_t face = texels->face[i], row = texels->row[i], column = texels->column[i];
-        const float *rgb = environment_texel(g->environment, face, row, column);
-        face_table table = tables_face(g->pools->tables, face);
-        float density = face_table_density(&table, row, column, texels->u[i], texels->v[i]);
+        const face_place at = {texels->face[i], texels->row[i], texels->column[i], texels->u[i], texels->v[i]};
+        const float *rgb = environment_texel(g->environment, at.face, at.row, at.column);
+        float expected = g->expected_in_face[at.face];
         to[SAMPLE_RED][k] = rgb[0];
         to[SAMPLE_GREEN][k] = rgb[1];
         to[SAMPLE_BLUE][k] = rgb[2];
-        to[SAMPLE_DENSITY][k] = g->expected_in_face[face] > 0.0f ? g->expected_in_face[face] * density : 0.0f;
+        to[SAMPLE_DENSITY][k] = expected > 0.0f ? expected * pools_density(g->pools, g->pool, &at) : 0.0f;
     }
 }
 

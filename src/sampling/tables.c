@@ -130,8 +130,7 @@ static uint32_t rescale(row_sum row, int to)
     return rounded > 1 ? (uint32_t)rounded : 1;
 }
 
-/* Prefix sums over rows. sums: [count + 1], or NULL if only the total is wanted. */
-static row_sum sum_rows(const row_sum *rows, uint32_t count, uint32_t *sums)
+row_sum tables_sum_rows(const row_sum *rows, uint32_t count, uint32_t *sums)
 {
     int exponent = common_exponent(rows, count, tables_summand_bits(count));
     uint32_t sum = 0;
@@ -162,9 +161,10 @@ static void build_face(void *data, size_t face)
 {
     helio_tables *tables = data;
     size_t size = tables->size;
-    row_sum weight = sum_rows(tables->row_sums + face * size, tables->size, tables->marginals + face * (size + 1));
+    row_sum weight =
+        tables_sum_rows(tables->row_sums + face * size, tables->size, tables->marginals + face * (size + 1));
     row_sum flux = tables->weighting == HELIO_WEIGHTING_PAPER
-                       ? sum_rows(tables->row_fluxes + face * size, tables->size, NULL)
+                       ? tables_sum_rows(tables->row_fluxes + face * size, tables->size, NULL)
                        : weight;
     find_row_densities(tables, face);
     tables->face_sums[face] = weight;
@@ -181,7 +181,7 @@ helio_status helio_tables_update(helio_tables *tables)
     size_t rows = CUBE_FACES * (size_t)tables->size;
     context_parallel_for(context, (rows + ROWS_AT_ONCE - 1) / ROWS_AT_ONCE, build_rows, tables);
     context_parallel_for(context, CUBE_FACES, build_face, tables);
-    sum_rows(tables->face_sums, CUBE_FACES, tables->faces);
+    tables_sum_rows(tables->face_sums, CUBE_FACES, tables->faces);
     tables->frame = tables->environment->frame;
     return HELIO_OK;
 }
@@ -210,7 +210,8 @@ bool tables_sample(const helio_tables *tables, uint32_t face, uint32_t x, uint32
         return false;
     uint32_t row = tables_invert(table.marginal, size, y, &row_fraction);
     uint32_t column = tables_invert(table.rows + (size_t)row * (size + 1), size, x, &column_fraction);
-    tables_sample_at(tables, face, row, row_fraction, column, column_fraction, sample);
+    face_place at = tables_place(size, face, row, row_fraction, column, column_fraction);
+    tables_sample_at(tables, &at, face_table_density(&table, row, column, at.u, at.v), sample);
     return true;
 }
 

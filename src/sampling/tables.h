@@ -69,33 +69,48 @@ static inline float tables_face_probability(const helio_tables *tables, uint32_t
     return tables->faces[6] ? (float)(tables->faces[face + 1] - tables->faces[face]) / (float)tables->faces[6] : 0.0f;
 }
 
+/* Prefix sums over sums of rows, all scaled by the same power of two. sums: [count + 1], or NULL if only the total is
+ * wanted. */
+row_sum tables_sum_rows(const row_sum *rows, uint32_t count, uint32_t *sums);
+
 /* Where x, a fraction of 2^32 that falls into a cell of prefix sums [count + 1], lies inside of that cell: a fraction
- * of 2^32 again. All in integers. */
+ * of 2^32 again. The sums may be a piece of longer ones, which does not begin with 0. All in integers. */
 static inline uint32_t tables_fraction_within(const uint32_t *sums, uint32_t count, uint32_t cell, uint32_t x)
 {
-    uint64_t target = (uint64_t)x * sums[count]; /* in units of 2^-32 */
-    return (uint32_t)((target - ((uint64_t)sums[cell] << 32)) / (sums[cell + 1] - sums[cell]));
+    uint64_t target = (uint64_t)x * (sums[count] - sums[0]); /* in units of 2^-32 */
+    return (uint32_t)((target - ((uint64_t)(sums[cell] - sums[0]) << 32)) / (sums[cell + 1] - sums[cell]));
 }
 
 /* Inverts prefix sums [count + 1] at x, a fraction of 2^32: the cell that holds it. The total must not be 0. fraction
  * receives where x lies inside of the cell. */
 uint32_t tables_invert(const uint32_t *sums, uint32_t count, uint32_t x, uint32_t *fraction);
 
-/* The sample in a texel, at fractions of 2^32 of its height and width. */
-static inline void tables_sample_at(const helio_tables *tables, uint32_t face, uint32_t row, uint32_t row_fraction,
-                                    uint32_t column, uint32_t column_fraction, helio_table_sample *sample)
+/* A place in a texel. */
+typedef struct face_place {
+    uint32_t face, row, column;
+    float u, v; /* of the place, not of the texel's centre */
+} face_place;
+
+/* At fractions of 2^32 of the texel's height and width. */
+static inline face_place tables_place(uint32_t size, uint32_t face, uint32_t row, uint32_t row_fraction,
+                                      uint32_t column, uint32_t column_fraction)
 {
-    face_table table = tables_face(tables, face);
-    float size = (float)table.size;
-    float u = ((float)(2 * column) + 2.0f * unit_float(column_fraction)) / size - 1.0f;
-    float v = ((float)(2 * row) + 2.0f * unit_float(row_fraction)) / size - 1.0f;
-    vec3_to(cube_direction(face, u, v), sample->direction);
-    const float *rgb = environment_texel(tables->environment, face, row, column);
+    float u = ((float)(2 * column) + 2.0f * unit_float(column_fraction)) / (float)size - 1.0f;
+    float v = ((float)(2 * row) + 2.0f * unit_float(row_fraction)) / (float)size - 1.0f;
+    return (face_place){face, row, column, u, v};
+}
+
+/* The sample at a place, drawn with some density. */
+static inline void tables_sample_at(const helio_tables *tables, const face_place *at, float density,
+                                    helio_table_sample *sample)
+{
+    vec3_to(cube_direction(at->face, at->u, at->v), sample->direction);
+    const float *rgb = environment_texel(tables->environment, at->face, at->row, at->column);
     for (int c = 0; c < 3; c++)
         sample->radiance[c] = rgb[c];
-    sample->density = face_table_density(&table, row, column, u, v);
-    sample->row = row;
-    sample->column = column;
+    sample->density = density;
+    sample->row = at->row;
+    sample->column = at->column;
 }
 
 /* helio_tables_sample() at a point given as fractions of 2^32. */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * One row of the tables: weights, their common exponent, integers, prefix sums. Integers from floats by exact powers of
- * two and one rounding, so every instruction set gives the same. */
+ * One row of the tables: weights, their common exponent, integers, prefix sums. */
 #include "core/vector.h"
+#include "sampling/fixed_point.h"
 #include "sampling/kernels.h"
 
 enum { PIECE = 256 }; /* texels from weights to sums at a time, so that the integers stay in the nearest cache */
@@ -38,57 +38,19 @@ static inline __attribute__((always_inline)) float weigh_texels(bool by_angle, c
     return float_of_bits(largest_bits);
 }
 
-/* The weights as integers: rounded, and at least 1 for a texel that is lit, however dark. */
-static void quantise(const float *restrict weights, uint32_t count, float factor, uint32_t *restrict integers)
-{
-#pragma omp simd
-    for (uint32_t i = 0; i < count; i++) {
-        int32_t least = weights[i] > 0.0f, integer = (int32_t)(weights[i] * factor + 0.5f);
-        integers[i] = (uint32_t)(integer > least ? integer : least);
-    }
-}
-
-/* Writes the sums of the integers before each, beginning with sum, and returns that of all. */
-static uint32_t scan(const uint32_t *restrict integers, uint32_t count, uint32_t sum, uint32_t *restrict sums)
-{
-#pragma omp simd reduction(inscan, + : sum)
-    for (uint32_t i = 0; i < count; i++) {
-        sums[i] = sum;
-#pragma omp scan exclusive(sum)
-        sum += integers[i];
-    }
-    return sum;
-}
-
-static uint32_t total(const uint32_t *integers, uint32_t count, uint32_t sum)
-{
-#pragma omp simd reduction(+ : sum)
-    for (uint32_t i = 0; i < count; i++)
-        sum += integers[i];
-    return sum;
-}
-
-/* The exponent e for which the largest weight x 2^e is below 2^bits, and nearly reaches it. At most 126, so that 2^e is
- * a normal float and a weight that a machine might flush to zero comes out as 0 or 1 in either case. */
-static int row_exponent(float largest, int bits)
-{
-    int exponent = 0;
-    frexpf(largest, &exponent);
-    return bits - exponent < 126 ? bits - exponent : 126;
-}
-
 row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, uint32_t size, uint32_t *sums)
 {
     float weights[CUBE_MAX_SIZE];
     uint32_t integers[PIECE], sum = 0;
     float largest = solid_angles != NULL ? weigh_texels(true, rgb, solid_angles, size, weights)
                                          : weigh_texels(false, rgb, solid_angles, size, weights);
-    int exponent = row_exponent(largest, tables_summand_bits(size));
+    int exponent = fixed_point_exponent(largest, tables_summand_bits(size));
     float factor = ldexpf(1.0f, exponent);
     for (uint32_t first = 0; first < size; first += PIECE) {
         uint32_t count = size - first < PIECE ? size - first : PIECE;
-        quantise(weights + first, count, factor, integers);
-        sum = sums != NULL ? scan(integers, count, sum, sums + first) : total(integers, count, sum);
+        fixed_point_quantise(weights + first, count, factor, integers);
+        sum = sums != NULL ? fixed_point_scan(integers, count, sum, sums + first)
+                           : fixed_point_total(integers, count, sum);
     }
     if (sums != NULL)
         sums[size] = sum;

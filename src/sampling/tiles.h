@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: MIT
+ * tiles.h - squares of texels, and their light as integers: coarse enough to be weighed for hundreds of pools in every
+ * frame, with the tables' texels inside.
+ *
+ * A face has T x T tiles, T = min(16, R), with borders after floor(k R / T) rows and columns. All tiles are in one
+ * order, along a Hilbert curve over each face, so that neighbours in the order are neighbours on the sphere: strata of
+ * samples are then compact. */
+#ifndef HELIOSTAT_SRC_TILES_H
+#define HELIOSTAT_SRC_TILES_H
+
+#include "sampling/tables.h"
+
+#include <stdalign.h>
+
+enum { TILES_PER_EDGE = 16, TILES_MOST = CUBE_FACES * TILES_PER_EDGE * TILES_PER_EDGE };
+
+typedef struct tiles {
+    helio_context *context;
+    uint32_t size;                       /* R */
+    uint32_t per_edge;                   /* T */
+    uint32_t count;                      /* 6 T^2 */
+    uint32_t stride;                     /* 1 + most rows of a tile */
+    float radius;                        /* largest angle between the centre of a tile and a direction in it */
+    uint32_t starts[TILES_PER_EDGE + 1]; /* first row, or column, of the tiles of an edge; R at the end */
+    uint8_t *of_line;                    /* [R]: which of the T tiles holds a row, or column */
+    uint16_t positions[TILES_MOST];      /* [6][T][T]: in the order */
+    uint16_t grid[TILES_MOST];           /* [count]: (face x T + row) x T + column of the tile at a position */
+    alignas(64) float x[TILES_MOST];     /* [count]: direction to the centre of the tile at a position */
+    alignas(64) float y[TILES_MOST];
+    alignas(64) float z[TILES_MOST];
+    alignas(64) float light[TILES_MOST]; /* [count]: the tables' weight, in proportion; 2^-60 to 1, or 0 */
+    row_sum totals[TILES_MOST];          /* [count]: the same exactly */
+    uint32_t *sums;                      /* [count][stride]: prefix sums over the rows of a tile */
+    float *segment_densities; /* [6][R][T]: what a unit of weight in this row of a tile adds to the density given the
+                                 tile, as row_densities of the tables do */
+} tiles;
+
+helio_status tiles_create(helio_context *context, uint32_t size, tiles **out);
+void tiles_destroy(tiles *t);
+
+/* Sums up the tables' current weights. No memory is taken. */
+void tiles_update(tiles *t, const helio_tables *tables);
+
+/* Where the tile that holds a texel comes in the order. */
+static inline uint32_t tiles_position(const tiles *t, uint32_t face, uint32_t row, uint32_t column)
+{
+    return t->positions[(face * t->per_edge + t->of_line[row]) * t->per_edge + t->of_line[column]];
+}
+
+/* Density, 1/sr, of a direction given its tile: the probabilities of its row in the tile and of its texel in that part
+ * of the row, from the stored integers. */
+static inline float tiles_density(const tiles *t, const helio_tables *tables, const face_place *at)
+{
+    const size_t line = (size_t)at->face * t->size + at->row;
+    const uint32_t *texel = tables->rows + line * (t->size + 1) + at->column;
+    const float radius2 = 1.0f + at->u * at->u + at->v * at->v;
+    return (float)(texel[1] - texel[0]) * t->segment_densities[line * t->per_edge + t->of_line[at->column]] *
+           (radius2 * sqrtf(radius2));
+}
+
+#endif
