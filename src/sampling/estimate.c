@@ -50,6 +50,16 @@ helio_status estimate_resolve(const helio_pools *pools, const helio_estimate_des
 
 /* ---- points side by side ---- */
 
+/* Pools of bins hold the product of light and cosine: there is nothing left for samples by a matte BRDF to do. */
+static float surface_share(const helio_pools *pools, const helio_material *material, const helio_estimate_desc *desc)
+{
+    if (pools->techniques == 0)
+        return 1.0f;
+    if (pools->parts.surface == STRATEGY_SURFACE_NONE)
+        return 0.0f;
+    return pools->bins != NULL && brdf_is_matte(material) ? 0.0f : desc->brdf_share;
+}
+
 /* Counts and windows of the points, and their directions in the map's space. */
 static void prepare_points(const helio_pools *pools, uint32_t count, const helio_shading_point *points,
                            const helio_estimate_desc *desc, point_block *block)
@@ -63,6 +73,7 @@ static void prepare_points(const helio_pools *pools, uint32_t count, const helio
         point_vector_put(&block->geometric_normal, i, vec3_from(point->geometric_normal));
         point_vector_put(&block->view, i, vec3_from(point->view));
         block->seed[i] = point->seed;
+        block->surface_share[i] = surface_share(pools, &point->material, desc);
     }
     kernels_of(context_isa(pools->tables->environment->context))->prepare_points(pools, desc, block);
 }
@@ -94,6 +105,9 @@ static void begin_surface_samples(gathering *g, uint32_t seed)
         g->proposal = brdf_prepare(&matte, g->surface.normal, g->surface.view);
     } else {
         brdf_prepare_share(&g->surface);
+        if (g->pools->bins != NULL)
+            g->surface.specular_share = 1.0f; /* only what the pools do not know; there is a specular lobe, or no
+                                                 sample would be taken */
         g->proposal = g->surface;
     }
     g->proposal_axes = brdf_find_axes(&g->proposal);
@@ -231,7 +245,20 @@ static void estimate_by_blocks(const gathering *g, const kernel_set *kernels, co
     }
 }
 
-/* Nothing asks for single samples, so that they need no blocks. */
+static bool reads_pools_alone(const point_block *block, uint32_t i)
+{
+    return block->surface_share[i] == 0.0f;
+}
+
+static bool has_points_of_pools(const point_block *block)
+{
+    bool has = false;
+    for (uint32_t i = 0; i < block->count; i++)
+        has |= reads_pools_alone(block, i);
+    return has;
+}
+
+/* For points that read pools alone. Nothing asks for single samples, so that they need no blocks. */
 static void estimate_from_pools(const helio_pools *pools, uint32_t samples, const helio_shading_point *points,
                                 const point_block *block, estimate_result *results)
 {
@@ -242,6 +269,8 @@ static void estimate_from_pools(const helio_pools *pools, uint32_t samples, cons
         prepare_surface(block, i, &points[i].material, &surfaces[i]);
     kernels_of(context_isa(environment->context))->sum_light(pools, samples, block, surfaces, sums);
     for (uint32_t i = 0; i < block->count; i++) {
+        if (!reads_pools_alone(block, i))
+            continue;
         results[i].info = (helio_estimate_info){.useful = sums[i].useful};
         for (uint32_t k = 0; k < pools->techniques; k++)
             results[i].info.samples += block->realised[k][i];
@@ -256,12 +285,12 @@ void estimate_points(const helio_pools *pools, uint32_t count, const helio_shadi
     point_block block;
     gathering g;
     prepare_points(pools, count, points, desc, &block);
-    if (pools->parts.surface == STRATEGY_SURFACE_NONE && desc->visibility == NULL) {
+    if (desc->visibility == NULL && has_points_of_pools(&block))
         estimate_from_pools(pools, desc->samples, points, &block, results);
-        return;
-    }
     const kernel_set *kernels = kernels_of(context_isa(pools->tables->environment->context));
     for (uint32_t i = 0; i < count; i++) {
+        if (desc->visibility == NULL && reads_pools_alone(&block, i))
+            continue;
         begin(&g, pools, &points[i], &block, i);
         estimate_by_blocks(&g, kernels, &points[i], desc, &results[i]);
     }

@@ -54,7 +54,7 @@ typedef struct kernel_set {
      * `rounding`, and they sum to samples exactly (or to 0, if all expected counts are 0). */
     void (*round_counts)(uint32_t samples, point_block *block);
 
-    /* The unoccluded light of points whose samples all come from pools, without the intensity of the environment.
+    /* The unoccluded light of those points whose samples all come from pools, without the intensity of the environment.
      * samples: of each. surfaces, sums: [block->count] */
     void (*sum_light)(const helio_pools *pools, uint32_t samples, const point_block *block, const brdf *surfaces,
                       block_sum *sums);

@@ -210,11 +210,14 @@ static inline __attribute__((always_inline)) block_sum sum_point(light_form form
 void KERNEL(sum_light)(const helio_pools *pools, uint32_t samples, const point_block *points, const brdf *surfaces,
                        block_sum *sums)
 {
-    for (uint32_t i = 0; i < points->count; i++)
+    for (uint32_t i = 0; i < points->count; i++) {
+        if (points->surface_share[i] > 0.0f)
+            continue;
         switch (form_of(&surfaces[i])) {
         case LIGHT_DIFFUSE: sums[i] = sum_point(LIGHT_DIFFUSE, pools, samples, points, i, &surfaces[i]); break;
         case LIGHT_PHONG: sums[i] = sum_point(LIGHT_PHONG, pools, samples, points, i, &surfaces[i]); break;
         case LIGHT_PHONG_WIDE: sums[i] = sum_point(LIGHT_PHONG_WIDE, pools, samples, points, i, &surfaces[i]); break;
         case LIGHT_GGX: sums[i] = sum_point(LIGHT_GGX, pools, samples, points, i, &surfaces[i]); break;
         }
+    }
 }

@@ -23,6 +23,7 @@ typedef struct point_block {
     uint32_t count;
     point_vectors normal, geometric_normal, view; /* in world space, until a kernel turns them to the map's */
     alignas(64) uint32_t seed[POINT_BLOCK];
+    alignas(64) float surface_share[POINT_BLOCK]; /* part of its samples that the surface technique takes */
     /* How each divides its samples among the techniques, see helio_counts. */
     alignas(64) float expected[TECHNIQUES][POINT_BLOCK];
     alignas(64) float rounding[POINT_BLOCK]; /* where systematic rounding starts, in [0, 1) */

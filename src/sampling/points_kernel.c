@@ -106,15 +106,12 @@ static void expect(uint32_t count, const double *worths, const double *shares, f
         expected[i] = (float)(worths[i] * shares[i]);
 }
 
-/* Expected counts m_k: samples in proportion to beta_f x flux_f, and a fixed share for the surface. All are 0 where no
+/* Expected counts m_k: samples in proportion to beta_f x flux_f, and a share for the surface. All are 0 where no
  * light can come from above the horizon. */
 static void expect_counts(const helio_pools *pools, const helio_estimate_desc *desc, point_block *block)
 {
     const uint32_t count = padded(block);
     const float samples = (float)desc->samples;
-    const float by_surface = pools->techniques == 0                          ? samples
-                             : pools->parts.surface != STRATEGY_SURFACE_NONE ? samples * desc->brdf_share
-                                                                             : 0.0f;
     pool_worths worths;
     alignas(64) double shares[POINT_BLOCK];
     memset(block->expected, 0, sizeof block->expected);
@@ -126,6 +123,7 @@ static void expect_counts(const helio_pools *pools, const helio_estimate_desc *d
 #pragma omp simd
     for (uint32_t i = 0; i < count; i++) {
         bool lit = worths.total[i] > 0.0;
+        float by_surface = samples * block->surface_share[i];
         shares[i] = (lit ? (double)(samples - by_surface) : 0.0) / (lit ? worths.total[i] : 1.0);
         block->expected[TECHNIQUE_SURFACE][i] = lit ? by_surface : 0.0f;
     }

@@ -1,0 +1,430 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Tiles, bins of normals and their pools: densities that integrate to 1, are above 0 wherever a normal that may choose
+ * the bin sees light, and are what samples follow; nothing happens at the edge of a bin. */
+#include "support.h"
+
+#include "core/random.h"
+#include "sampling/kernels.h"
+
+#include <heliostat/heliostat.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- worlds ---- */
+
+typedef struct world {
+    helio_context *context;
+    helio_environment *environment;
+    helio_tables *tables;
+    helio_pools *pools;
+} world;
+
+/* rgb: a strip, as large as the cube. */
+static world make_world(const float *rgb, uint32_t size, uint32_t bins, uint32_t length, helio_weighting weighting)
+{
+    world w = {.context = make_context(1, NULL)};
+    const helio_pools_desc desc = {.strategy = HELIO_STRATEGY_PRODUCT, .length = length, .bins = bins};
+    w.environment = make_environment(w.context, HELIO_LAYOUT_STRIP, size, 6 * size, size, rgb, NULL);
+    assert_ok(helio_tables_create(w.environment, weighting, &w.tables));
+    assert_ok(helio_tables_update(w.tables));
+    assert_ok(helio_pools_create(w.tables, &desc, &w.pools));
+    assert_ok(helio_pools_draw(w.pools, 3, 1));
+    return w;
+}
+
+static void destroy_world(world *w)
+{
+    helio_pools_destroy(w->pools);
+    helio_tables_destroy(w->tables);
+    helio_environment_destroy(w->environment);
+    helio_context_destroy(w->context);
+}
+
+static size_t numbers(uint32_t size)
+{
+    return (size_t)6 * size * size * 3;
+}
+
+static float *make_map(uint32_t size)
+{
+    float *rgb = calloc(numbers(size), sizeof *rgb);
+    assert_non_null(rgb);
+    return rgb;
+}
+
+/* Some texels, and a whole row, are black; one is a sun. */
+static float *make_sky(uint32_t size, uint64_t seed)
+{
+    float *rgb = make_map(size);
+    for (size_t i = 0; i < numbers(size); i++)
+        rgb[i] = random_bits(&seed) % 8 == 0 ? 0.0f : (float)random_unit(&seed);
+    memset(rgb + (size_t)(size / 2) * size * 3, 0, size * 3 * sizeof *rgb);
+    for (size_t c = 0; c < 3; c++)
+        rgb[numbers(size) / 2 + c] = 1e5f;
+    return rgb;
+}
+
+static const uint32_t sizes[] = {1, 2, 3, 8, 16, 17, 40};
+enum { SIZES = sizeof sizes / sizeof sizes[0] };
+
+/* ---- tiles ---- */
+
+static void tiles_divide_each_face_and_follow_a_curve(void **state)
+{
+    (void)state;
+    for (int s = 0; s < SIZES; s++) {
+        float *map = make_sky(sizes[s], 1);
+        world w = make_world(map, sizes[s], 1, 64, HELIO_WEIGHTING_SOLID_ANGLE);
+        const tiles *t = w.pools->bins->tiles;
+        uint32_t jumps = 0;
+        bool met[TILES_MOST] = {false};
+        assert_int_equal(t->per_edge, sizes[s] < 16 ? sizes[s] : 16);
+        assert_int_equal(t->count, 6 * t->per_edge * t->per_edge);
+        for (uint32_t i = 0; i < t->count; i++) {
+            assert_false(met[t->grid[i]]);
+            met[t->grid[i]] = true;
+            assert_int_equal(t->positions[t->grid[i]], i);
+            const vec3 centre = {t->x[i], t->y[i], t->z[i]};
+            const vec3 before = i > 0 ? (vec3){t->x[i - 1], t->y[i - 1], t->z[i - 1]} : centre;
+            /* Next to each other: two tiles in a row, or round an edge of the cube. */
+            jumps += acosf(fminf(1.0f, dot(centre, before))) > 4.5f * t->radius;
+            cube_position at = cube_project(centre);
+            uint32_t column = cube_texel(at.u, t->size), row = cube_texel(at.v, t->size);
+            assert_int_equal(tiles_position(t, at.face, row, column), i);
+        }
+        assert_true(jumps <= 5); /* from one face to the next, at most */
+        destroy_world(&w);
+        free(map);
+    }
+}
+
+static void the_light_of_tiles_is_that_of_their_texels(void **state)
+{
+    (void)state;
+    for (int s = 0; s < SIZES; s++) {
+        float *map = make_sky(sizes[s], 2);
+        world w = make_world(map, sizes[s], 1, 64, HELIO_WEIGHTING_SOLID_ANGLE);
+        const tiles *t = w.pools->bins->tiles;
+        double exact[TILES_MOST] = {0}, total = 0, sum = 0;
+        for (uint32_t face = 0; face < 6; face++)
+            for (uint32_t row = 0; row < t->size; row++)
+                for (uint32_t column = 0; column < t->size; column++) {
+                    double light = (double)luminance(environment_texel(w.environment, face, row, column)) *
+                                   (double)w.environment->solid_angle[row * t->size + column];
+                    exact[tiles_position(t, face, row, column)] += light;
+                    total += light;
+                }
+        for (uint32_t i = 0; i < t->count; i++)
+            sum += (double)t->light[i];
+        for (uint32_t i = 0; i < t->count; i++) {
+            double light = (double)t->light[i] / sum, expected = exact[i] / total;
+            assert_int_equal(light > 0, expected > 0);
+            /* A row's texels are rounded to 22 bits of the brightest beside them, which may be a sun of 10^5. */
+            assert_true(fabs(light - expected) <= 1e-3 * expected + 1e-6);
+        }
+        destroy_world(&w);
+        free(map);
+    }
+}
+
+/* ---- densities ---- */
+
+static face_place place_of(uint32_t size, uint32_t face, double u, double v)
+{
+    return (face_place){face, cube_texel((float)v, size), cube_texel((float)u, size), (float)u, (float)v};
+}
+
+/* By midpoints of a grid on each texel. */
+static double integral_of_density(const world *w, uint32_t bin)
+{
+    const uint32_t size = w->tables->size, parts = size >= 8 ? 4 : size > 1 ? 32 : 128;
+    const double cell = 2.0 / (size * parts);
+    double sum = 0;
+    for (uint32_t face = 0; face < 6; face++)
+        for (uint32_t y = 0; y < size * parts; y++)
+            for (uint32_t x = 0; x < size * parts; x++) {
+                double u = (x + 0.5) * cell - 1, v = (y + 0.5) * cell - 1;
+                face_place at = place_of(size, face, u, v);
+                sum += (double)pools_density(w->pools, bin, &at) * cell * cell * pow(1 + u * u + v * v, -1.5);
+            }
+    return sum;
+}
+
+/* The factor (1 + u^2 + v^2)^(3/2) of the density cancels that of the solid angle: floats are all that is off. */
+static void densities_integrate_to_one(void **state)
+{
+    (void)state;
+    for (int s = 0; s < SIZES; s++)
+        for (int weighting = 0; weighting < 2; weighting++) {
+            float *map = make_sky(sizes[s], 3);
+            world w = make_world(map, sizes[s], 3, 64, (helio_weighting)weighting);
+            for (uint32_t bin = 0; bin < w.pools->count; bin += 5)
+                assert_float_equal(integral_of_density(&w, bin), 1.0, 1e-5);
+            destroy_world(&w);
+            free(map);
+        }
+}
+
+static vec3 random_direction(uint64_t *state)
+{
+    double z = 2 * random_unit(state) - 1, angle = 2 * PI * random_unit(state), r = sqrt(1 - z * z);
+    return (vec3){(float)(r * cos(angle)), (float)(r * sin(angle)), (float)z};
+}
+
+/* Any normal, or one at a corner or edge of a cell or face, or next to it; up to 1e-3 off unit length. */
+static vec3 trying_normal(uint64_t *state, uint32_t bins)
+{
+    vec3 n = random_direction(state);
+    float *c[3] = {&n.x, &n.y, &n.z};
+    uint32_t kind = random_bits(state) % 4;
+    if (kind == 1) /* on the grid of uv, which is not that of the cells, but meets it in the middle and at the ends */
+        for (int i = 0; i < 3; i++)
+            *c[i] = (float)(random_bits(state) % (2 * bins + 1)) / (float)bins - 1.0f;
+    else if (kind == 2)
+        *c[random_bits(state) % 3] = 0.0f;
+    else if (kind == 3)
+        n.x = n.y;
+    n = add_scaled(n, random_direction(state), random_bits(state) % 2 ? 1e-6f : 0.0f);
+    float norm = length(n);
+    return norm > 0.0f ? scale(n, (1.0f + 1e-3f * (float)(2 * random_unit(state) - 1)) / norm) : (vec3){0, 1, 0};
+}
+
+/* A direction in the hemisphere of the normal, often just above the horizon; (u, v) at a corner of its tile or not. */
+static vec3 trying_direction(uint64_t *state, vec3 normal)
+{
+    vec3 d = random_direction(state);
+    float height = dot(d, normal);
+    if (random_bits(state) % 2)
+        d = add_scaled(d, normal, (1e-4f - height) / dot(normal, normal));
+    else if (height < 0.0f)
+        d = scale(d, -1.0f);
+    return normalize(d);
+}
+
+/* Where the map is lit everywhere, so must be all directions that the normal sees: or the estimate would be biased. And
+ * no contribution is out of bounds. */
+static void densities_are_positive_for_every_normal_that_may_choose_the_bin(void **state)
+{
+    (void)state;
+    static const uint32_t per_edge[] = {1, 2, 3, 8, 32};
+    for (int s = 0; s < SIZES; s++)
+        for (int b = 0; b < 5; b++) {
+            uint64_t random = 4;
+            float *map = make_map(sizes[s]);
+            double worst = 0;
+            for (size_t i = 0; i < numbers(sizes[s]); i++)
+                map[i] = 1.0f;
+            world w = make_world(map, sizes[s], per_edge[b], 64, HELIO_WEIGHTING_SOLID_ANGLE);
+            const normal_bins *bins = w.pools->bins;
+            for (int i = 0; i < 20000; i++) {
+                vec3 normal = trying_normal(&random, per_edge[b]);
+                uint32_t shake = random_bits(&random), kind = i % 4;
+                shake = kind == 0 ? 0u : kind == 1 ? UINT32_MAX : shake;
+                uint32_t bin = normal_bins_cell(per_edge[b], normal_bins_shaken(bins, normal, shake));
+                vec3 direction = trying_direction(&random, normal);
+                cube_position to = cube_project(direction);
+                face_place at = place_of(sizes[s], to.face, (double)to.u, (double)to.v);
+                float density = pools_density(w.pools, bin, &at);
+                if (dot(normal, direction) > 0.0f && !(density > 0.0f))
+                    fail_msg("R %u, B %u: normal %g %g %g, direction %g %g %g has density 0 in bin %u", sizes[s],
+                             per_edge[b], (double)normal.x, (double)normal.y, (double)normal.z, (double)direction.x,
+                             (double)direction.y, (double)direction.z, bin);
+                worst = fmax(worst, (double)(dot(normal, direction) / density) / PI);
+            }
+            /* In units of an even map's mean. What is found is half of it; coarse tiles or bins do not fit a horizon. */
+            assert_true(worst < (sizes[s] >= 8 && per_edge[b] >= 8 ? 70 : 400));
+            destroy_world(&w);
+            free(map);
+        }
+}
+
+/* ---- samples ---- */
+
+/* A count for every texel, from a pool that is drawn many times. */
+static void check_follows(world *w, uint32_t bin, uint32_t draws, const char *what)
+{
+    const uint32_t size = w->tables->size, length = w->pools->pool_length;
+    const size_t texels = (size_t)6 * size * size;
+    double *drawn = calloc(texels, sizeof *drawn), *expected = calloc(texels, sizeof *expected);
+    assert_true(drawn != NULL && expected != NULL);
+    for (uint32_t pass = 0; pass < draws; pass++) {
+        assert_ok(helio_pools_draw(w->pools, 5, pass));
+        for (uint32_t i = 0; i < length; i++) {
+            const vec3 d = {pools_array(w->pools, bin, SAMPLE_X)[i], pools_array(w->pools, bin, SAMPLE_Y)[i],
+                            pools_array(w->pools, bin, SAMPLE_Z)[i]};
+            cube_position at = cube_project(d);
+            drawn[((size_t)at.face * size + cube_texel(at.v, size)) * size + cube_texel(at.u, size)]++;
+        }
+    }
+    for (size_t i = 0; i < texels; i++) {
+        const uint32_t column = (uint32_t)i % size, row = (uint32_t)i / size % size;
+        double u = (column + 0.5) * 2 / size - 1, v = (row + 0.5) * 2 / size - 1;
+        face_place at = place_of(size, (uint32_t)i / (size * size), u, v);
+        /* Even in (u, v) over a texel. 1e-3: samples within rounding of a border may lead to the neighbour. */
+        double probability =
+            (double)pools_density(w->pools, bin, &at) * pow(1 + u * u + v * v, -1.5) * 4 / (size * size);
+        expected[i] = probability * draws * length + 1e-3;
+    }
+    double p = chi_square_tail(drawn, expected, texels, 1);
+    if (!(p > 1e-9))
+        fail_msg("%s: the pool of bin %u does not follow its density, p = %g", what, bin, p);
+    free(drawn);
+    free(expected);
+}
+
+static void pools_follow_their_densities(void **state)
+{
+    (void)state;
+    for (int s = 0; s < SIZES; s++) {
+        char what[32];
+        float *map = make_sky(sizes[s], 6);
+        snprintf(what, sizeof what, "R = %u", sizes[s]);
+        world w = make_world(map, sizes[s], 2, 256, HELIO_WEIGHTING_SOLID_ANGLE);
+        for (uint32_t bin = 0; bin < w.pools->count; bin += 7)
+            check_follows(&w, bin, 60, what);
+        destroy_world(&w);
+        free(map);
+    }
+}
+
+/* Stored densities are those of the density function, to the bit; weighted colours are colours over densities. */
+static void samples_carry_the_density_of_their_direction(void **state)
+{
+    (void)state;
+    float *map = make_sky(17, 7);
+    world w = make_world(map, 17, 3, 128, HELIO_WEIGHTING_SOLID_ANGLE);
+    uint32_t equal = 0, all = w.pools->count * w.pools->pool_length;
+    for (uint32_t i = 0; i < all; i++) {
+        const vec3 d = {pools_array(w.pools, 0, SAMPLE_X)[i], pools_array(w.pools, 0, SAMPLE_Y)[i],
+                        pools_array(w.pools, 0, SAMPLE_Z)[i]};
+        cube_position to = cube_project(d);
+        face_place at = place_of(17, to.face, (double)to.u, (double)to.v);
+        float density = pools_density(w.pools, i / w.pools->pool_length, &at);
+        float stored = pools_array(w.pools, 0, SAMPLE_DENSITY)[i], red = pools_array(w.pools, 0, SAMPLE_RED)[i];
+        /* (u, v) come from the direction here: rounded, and rarely over the border of a texel. */
+        equal += fabsf(density - stored) <= 2e-6f * stored;
+        assert_true(fabsf(pools_array(w.pools, 0, SAMPLE_WEIGHTED_RED)[i] - red / stored) <= 1e-6f * red / stored);
+    }
+    assert_true(equal >= all - all / 1000);
+    destroy_world(&w);
+    free(map);
+}
+
+/* ---- bins ---- */
+
+/* How often a normal chooses each bin, walking over the sphere in small steps: shares change by no more than the step
+ * allows, at edges of cells and faces as elsewhere. */
+static void no_edge_of_a_bin_shows(void **state)
+{
+    (void)state;
+    enum { STEPS = 600, SHAKES = 4096 };
+    static double before[6 * 64], now[6 * 64];
+    float *map = make_sky(4, 8);
+    world w = make_world(map, 4, 8, 64, HELIO_WEIGHTING_SOLID_ANGLE);
+    const double step = 2 * PI / STEPS;
+    double largest = 0;
+    for (int i = 0; i <= STEPS; i++) {
+        const float a = (float)(i * step);
+        vec3 normal = normalize((vec3){cosf(a), 0.9f * sinf(a), 0.55f * sinf(a + 0.3f)});
+        memset(now, 0, sizeof now);
+        for (uint32_t k = 0; k < SHAKES; k++) /* a net in the three numbers of ten bits */
+            now[normal_bins_cell(8, normal_bins_shaken(w.pools->bins, normal,
+                                                       (sobol(k, 0) >> 22) | (sobol(k, 1) >> 22) << 10 |
+                                                           (sobol(k, 2) >> 22) << 20))] += 1.0 / SHAKES;
+        double apart = 0;
+        for (uint32_t bin = 0; bin < w.pools->count; bin++)
+            apart += fabs(now[bin] - before[bin]) / 2;
+        largest = i > 0 ? fmax(largest, apart) : 0;
+        memcpy(before, now, sizeof now);
+    }
+    /* A cell's edge crosses a box of width 0.1 at a speed of at most 1.4 x the step along each of two axes; plus what a
+     * net of 4096 points is off by. Without the shaking the share of a bin jumps by 1. */
+    print_message("largest share of samples that change their bin over %.3f rad: %.3f\n", step, largest);
+    assert_true(largest < 2 * 1.4 * step / 0.1 + 0.03);
+    destroy_world(&w);
+    free(map);
+}
+
+static void bins_are_cells_around_their_centres(void **state)
+{
+    (void)state;
+    for (uint32_t per_edge = 1; per_edge <= 32; per_edge += per_edge / 3 + 1) {
+        normal_bins *bins;
+        helio_context *context = make_context(1, NULL);
+        assert_ok(normal_bins_create(context, per_edge, 8, 64, &bins));
+        assert_int_equal(bins->count, 6 * per_edge * per_edge);
+        for (uint32_t i = 0; i < bins->count; i++)
+            assert_int_equal(normal_bins_cell(per_edge, bins->bins[i].centre), i);
+        normal_bins_destroy(bins);
+        helio_context_destroy(context);
+    }
+}
+
+/* ---- what degenerates ---- */
+
+static void black_maps_have_no_density_and_one_texel_has_it_all(void **state)
+{
+    (void)state;
+    for (int s = 0; s < SIZES; s++) {
+        float *map = make_map(sizes[s]);
+        world w = make_world(map, sizes[s], 2, 64, HELIO_WEIGHTING_SOLID_ANGLE);
+        for (uint32_t bin = 0; bin < w.pools->count; bin++)
+            assert_true(w.pools->bins->shares[bin] == 0.0f && pools_array(w.pools, bin, SAMPLE_DENSITY)[0] == 0.0f);
+        map[numbers(sizes[s]) / 2 + 1] = 1e-20f; /* one texel of face +-Y or so, in green */
+        assert_ok(helio_environment_update(w.environment, map, NULL));
+        assert_ok(helio_tables_update(w.tables));
+        assert_ok(helio_pools_draw(w.pools, 1, 1));
+        uint32_t lit = 0;
+        for (uint32_t bin = 0; bin < w.pools->count; bin++) {
+            if (w.pools->bins->shares[bin] == 0.0f)
+                continue;
+            lit++;
+            for (uint32_t i = 0; i < w.pools->pool_length; i++)
+                assert_true(pools_array(w.pools, bin, SAMPLE_GREEN)[i] == 1e-20f);
+        }
+        assert_true(lit > 0);
+        destroy_world(&w);
+        free(map);
+    }
+}
+
+/* New frames weigh tiles anew; more passes of one frame do not. */
+static void bins_follow_the_frame(void **state)
+{
+    (void)state;
+    float *map = make_sky(8, 9), *other = make_sky(8, 10);
+    world w = make_world(map, 8, 2, 64, HELIO_WEIGHTING_SOLID_ANGLE);
+    world fresh = make_world(other, 8, 2, 64, HELIO_WEIGHTING_SOLID_ANGLE);
+    assert_ok(helio_environment_update(w.environment, other, NULL));
+    assert_ok(helio_tables_update(w.tables));
+    for (uint32_t pass = 0; pass < 3; pass++) {
+        assert_ok(helio_pools_draw(w.pools, 9, pass));
+        assert_ok(helio_pools_draw(fresh.pools, 9, pass));
+        assert_memory_equal(w.pools->samples, fresh.pools->samples, w.pools->stride * POOL_ARRAYS * sizeof(float));
+    }
+    destroy_world(&w);
+    destroy_world(&fresh);
+    free(map);
+    free(other);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(tiles_divide_each_face_and_follow_a_curve),
+        cmocka_unit_test(the_light_of_tiles_is_that_of_their_texels),
+        cmocka_unit_test(densities_integrate_to_one),
+        cmocka_unit_test(densities_are_positive_for_every_normal_that_may_choose_the_bin),
+        cmocka_unit_test(pools_follow_their_densities),
+        cmocka_unit_test(samples_carry_the_density_of_their_direction),
+        cmocka_unit_test(no_edge_of_a_bin_shows),
+        cmocka_unit_test(bins_are_cells_around_their_centres),
+        cmocka_unit_test(black_maps_have_no_density_and_one_texel_has_it_all),
+        cmocka_unit_test(bins_follow_the_frame),
+    };
+    return cmocka_run_group_tests_name("product", tests, NULL, NULL);
+}
