@@ -97,7 +97,8 @@ typedef struct cli_options {
 
     const char *mesh, *material, *camera, *ground;
 
-    uint32_t spp, aa, seed;
+    uint32_t spp, aa, seed, bins;
+    uint32_t pool_length; /* 0: not given */
     const char *strategy, *weighting, *decorrelate, *visibility, *seed_mode;
     double brdf_share;
     bool no_beta;

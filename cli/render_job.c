@@ -76,6 +76,8 @@ helio_renderer_desc render_job_describe(const render_job *job)
         .aa = options->aa,
         .strategy = job->plan.strategy,
         .weighting = job->plan.weighting,
+        .pool_length = options->pool_length,
+        .bins = options->bins,
         .brdf_share = (float)options->brdf_share,
         .no_beta = options->no_beta,
         .no_decorrelation = options->decorrelate[0] == 'n',

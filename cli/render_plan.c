@@ -82,6 +82,8 @@ static void warn_of_idle_sampling(const render_plan *plan)
     bool by_face = strncmp(strategy, "face", 4) == 0, has_brdf = strstr(strategy, "+brdf") != NULL;
     if (options->no_beta && !by_face)
         message_warning("--no-beta changes nothing with --strategy %s", strategy);
+    if (options->bins != 8 && strncmp(strategy, "product", 7) != 0)
+        message_warning("--bins changes nothing with --strategy %s", strategy);
     if (options->brdf_share != 0.5 && !has_brdf)
         message_warning("--brdf-share changes nothing with --strategy %s", strategy);
 }

@@ -32,7 +32,7 @@ static bool same_bytes(const char *path, const char *other_path)
 #define ALL_OPTIONS                                                                                                    \
     "--env=constant:1,1,1 --layout=auto --env-size=8 --rotate=-30.5 --flip --intensity=2 --mesh=tetrahedron.obj "      \
     "--material=file --camera=auto --ground=plane --spp=16 --aa=2 --strategy=face+brdf --brdf-share=0.25 "             \
-    "--weighting=paper --no-beta --decorrelate=none --visibility=none --seed=7 --size=32x24 --out=all.exr --aovs "     \
+    "--pool-length=256 --bins=8 --weighting=paper --no-beta --decorrelate=none --visibility=none --seed=7 --size=32x24 --out=all.exr --aovs "     \
     "--background=env --exposure=-1.5 --tonemap=clip --stats=all.json --max-pixels=1 "                                 \
     "--frames=0..0 --day-frames=9 --on-missing=hold --transfer=pq --fps=30 --codec=ffv1 --quality=0.5 --hdr "          \
     "--contact-sheet=sheet.png --reference=reference.pfm --resume --seed-mode=frame "                                  \
@@ -323,6 +323,7 @@ static void test_options_without_effect_are_told(void **state)
     } table[] = {
         {SMALL "--out idle.png --no-beta --strategy light", "--no-beta"},
         {SMALL "--out idle.png --brdf-share 0.2 --strategy face", "--brdf-share"},
+        {SMALL "--out idle.png --bins 4", "--bins"},
         {SMALL "--out idle.png --layout latlong", "--layout"},
         {SMALL "--out idle.exr --exposure 2", "--exposure"},
         {SMALL "--out idle.pfm --ground shadow", "alpha"},

@@ -156,7 +156,8 @@ typedef void (*helio_visibility)(void *user, const helio_shading_point *point, u
 
 typedef struct helio_estimate_desc {
     uint32_t samples; /* N_s, light + BRDF samples, 1..helio_pools_sample_limit(); default 64 or that limit */
-    float brdf_share; /* part of N_s for the BRDF in ..._BRDF, 0 < share < 1; default 0.5 */
+    float brdf_share; /* part of N_s for the BRDF in ..._BRDF, 0 < share < 1; default 0.5. In PRODUCT_BRDF for
+                                    surfaces that are all specular; less for others, 0 for matte ones */
     bool no_beta;     /* spread samples by flux alone over the faces that reach above the horizon: shows the
                                     discontinuities of the paper's supplement, Figure 1 */
     helio_visibility visibility; /* default: nothing is in the way */

@@ -90,7 +90,7 @@ static helio_status resolve_desc(const helio_renderer_desc *given, helio_rendere
 static helio_status create_parts(helio_renderer *renderer)
 {
     const helio_renderer_desc *desc = &renderer->desc;
-    const helio_pools_desc pools = {.strategy = desc->strategy, .length = desc->pool_length};
+    const helio_pools_desc pools = {.strategy = desc->strategy, .length = desc->pool_length, .bins = desc->bins};
     HELIO_TRY(helio_tables_create(desc->environment, desc->weighting, &renderer->tables));
     HELIO_TRY(helio_pools_create(renderer->tables, &pools, &renderer->pools));
     const film_desc film = {

@@ -57,13 +57,6 @@ static void prepare_ggx(brdf *b, const helio_material *material)
     b->colours[2] = scale(rest, view_visibility);
 }
 
-bool brdf_is_matte(const helio_material *material)
-{
-    const float *specular = material->specular;
-    return material->kind == HELIO_MATERIAL_DIFFUSE ||
-           (material->kind == HELIO_MATERIAL_PHONG && !(specular[0] + specular[1] + specular[2] > 0.0f));
-}
-
 void brdf_prepare_value(brdf *b, const helio_material *material, vec3 normal, vec3 view)
 {
     b->kind = material->kind;

@@ -49,9 +49,6 @@ brdf brdf_prepare(const helio_material *material, vec3 normal, vec3 view);
 void brdf_prepare_value(brdf *b, const helio_material *material, vec3 normal, vec3 view);
 void brdf_prepare_share(brdf *b);
 
-/* Is there nothing but a diffuse lobe? */
-bool brdf_is_matte(const helio_material *material);
-
 brdf_axes brdf_find_axes(const brdf *b);
 
 /* The rule for grazing views. */

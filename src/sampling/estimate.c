@@ -50,14 +50,30 @@ helio_status estimate_resolve(const helio_pools *pools, const helio_estimate_des
 
 /* ---- points side by side ---- */
 
-/* Pools of bins hold the product of light and cosine: there is nothing left for samples by a matte BRDF to do. */
-static float surface_share(const helio_pools *pools, const helio_material *material, const helio_estimate_desc *desc)
+/* Pools of bins hold the product of light and cosine, so that BRDF samples have only the specular lobe to look after:
+ * the fewer, the less of the reflected light is its part s. Between s and its root, as a lobe that is weak, but sharp,
+ * still needs some (docs/method.md). Rounded to a power of two, up or down by chance, as such numbers of samples are
+ * nets. */
+static float specular_need(const helio_shading_point *point)
+{
+    if (point->material.kind == HELIO_MATERIAL_DIFFUSE)
+        return 0.0f;
+    vec3 normal = vec3_from(point->normal), view = brdf_lift_view(normal, vec3_from(point->view));
+    float specular = brdf_prepare(&point->material, normal, view).specular_share;
+    if (!(specular > 0.0f))
+        return 0.0f;
+    float need = 0.5f * (specular + sqrtf(specular)), random = unit_float(hash_combine(point->seed, STREAM_SPLIT));
+    return ldexpf(1.0f, -(int)(random - log2_fast(need)));
+}
+
+/* Part of a point's samples that the surface technique takes. */
+static float surface_share(const helio_pools *pools, const helio_shading_point *point, const helio_estimate_desc *desc)
 {
     if (pools->techniques == 0)
         return 1.0f;
     if (pools->parts.surface == STRATEGY_SURFACE_NONE)
         return 0.0f;
-    return pools->bins != NULL && brdf_is_matte(material) ? 0.0f : desc->brdf_share;
+    return desc->brdf_share * (pools->bins != NULL ? specular_need(point) : 1.0f);
 }
 
 /* Counts and windows of the points, and their directions in the map's space. */
@@ -73,7 +89,7 @@ static void prepare_points(const helio_pools *pools, uint32_t count, const helio
         point_vector_put(&block->geometric_normal, i, vec3_from(point->geometric_normal));
         point_vector_put(&block->view, i, vec3_from(point->view));
         block->seed[i] = point->seed;
-        block->surface_share[i] = surface_share(pools, &point->material, desc);
+        block->surface_share[i] = surface_share(pools, point, desc);
     }
     kernels_of(context_isa(pools->tables->environment->context))->prepare_points(pools, desc, block);
 }

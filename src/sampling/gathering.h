@@ -14,8 +14,8 @@ enum {
     BLOCK_STRIDE = BLOCK_SAMPLES + POOL_PADDING, /* kernels write whole registers */
 };
 
-/* The stream of random numbers of a point that its surface samples use; others belong to points_kernel.c. */
-enum { STREAM_SURFACE = 2 };
+/* Streams of random numbers of a point. */
+enum { STREAM_ROUNDING = 1, STREAM_SURFACE, STREAM_WINDOW, STREAM_BIN, STREAM_SPLIT };
 
 /* What is known about a point before its samples. All directions are in the map's space. */
 typedef struct gathering {

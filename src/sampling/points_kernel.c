@@ -7,9 +7,6 @@
 
 #include <string.h>
 
-/* Streams of random numbers of a point; STREAM_SURFACE belongs to gathering.h. */
-enum { STREAM_ROUNDING = 1, STREAM_WINDOW = 3, STREAM_BIN = 4 };
-
 static uint32_t padded(const point_block *block)
 {
     return (block->count + HELIO_LANES - 1) / HELIO_LANES * HELIO_LANES;
