@@ -278,7 +278,7 @@ const cli_option option_table[] = {
     {.name = "strategy",
      .argument = "S",
      .shown = "face, which is the paper's",
-     .choices = "auto cosine brdf light light+brdf face face+brdf",
+     .choices = "auto cosine brdf light light+brdf face face+brdf product product+brdf",
      .help = "how the directions to the light are chosen that samples shows",
      .kind = OPTION_CHOICE,
      MEMBER(samples.strategy),

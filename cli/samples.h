@@ -47,8 +47,8 @@ typedef struct samples_findings {
     helio_pixel_step pixel;               /* in the first pass */
     float normal[3], geometric_normal[3]; /* in the map's space */
     uint32_t passes;                      /* each has pools of its own */
-    uint32_t pool_count, pool_length;     /* pools of a pass, samples of a pool */
-    uint32_t pooled;                      /* samples of all pools; there are none of faces without light */
+    uint32_t pool_count, pool_length;     /* pools that the point reads in a pass, samples of a pool */
+    uint32_t pooled;                      /* samples of these pools; there are none of faces without light */
     helio_pool_sample *pools;             /* [passes][pool_count][pool_length] */
     uint32_t sample_count, capacity;      /* samples; room for them */
     point_sample *samples;                /* [sample_count] */
@@ -67,7 +67,7 @@ void samples_release(samples_findings *found);
  * .radiance but the flux. */
 helio_status samples_gather(samples_findings *found, render_job *job, uint64_t index);
 
-/* "+X" and so on where there is a pool for each face; "map", "BRDF", "cosine". */
+/* "+X" and so on where there is a pool for each face; "map", "bin", "BRDF", "cosine". */
 const char *samples_technique_name(const samples_findings *found, uint32_t technique);
 bool samples_is_by_face(const samples_findings *found);
 uint32_t samples_useless(const technique_count *count);

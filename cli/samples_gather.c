@@ -19,7 +19,7 @@ bool samples_make(samples_findings *found, const render_job *job)
         .is_dynamic = job->source_info.is_dynamic,
         .strategy = helio_strategy_resolve(job->plan.strategy),
         .passes = helio_renderer_steps(job->renderer),
-        .pool_count = helio_pools_count(pools),
+        .pool_count = helio_pools_techniques(pools),
         .pool_length = helio_pools_length(pools),
         .capacity = job->plan.options->spp,
     };
@@ -50,11 +50,12 @@ typedef struct gathered_step {
     uint32_t count;
 } gathered_step;
 
+/* Those that the point reads. */
 static helio_status read_pools(samples_findings *found, const gathered_step *step)
 {
-    for (uint32_t pool = 0; pool < found->pool_count; pool++) {
-        helio_pool_sample *to = found->pools + ((size_t)step->number * found->pool_count + pool) * found->pool_length;
-        helio_status status = helio_pools_read(step->pools, pool, 0, found->pool_length, to);
+    for (uint32_t k = 0; k < found->pool_count; k++) {
+        helio_pool_sample *to = found->pools + ((size_t)step->number * found->pool_count + k) * found->pool_length;
+        helio_status status = helio_pools_read(step->pools, step->counts.pool[k], 0, found->pool_length, to);
         if (status != HELIO_OK)
             return status;
         for (uint32_t i = 0; i < found->pool_length; i++)
@@ -180,9 +181,9 @@ static helio_status gather_step(samples_findings *found, render_job *job, const 
     if (status != HELIO_OK || pixel.hit != HELIO_HIT_OBJECT)
         return status;
     step.share = (double)pixel.estimate.samples / job->plan.options->spp;
-    status = read_pools(found, &step);
+    status = helio_count(step.pools, &pixel.point, &pixel.estimate, &step.counts);
     if (status == HELIO_OK)
-        status = helio_count(step.pools, &pixel.point, &pixel.estimate, &step.counts);
+        status = read_pools(found, &step);
     if (status == HELIO_OK)
         status = helio_gather(step.pools, &pixel.point, &pixel.estimate, samples, &step.count);
     if (status == HELIO_OK)

@@ -19,11 +19,16 @@ bool samples_is_by_face(const samples_findings *found)
     return found->pool_count == FACE_COUNT;
 }
 
+static bool is_by_bin(const samples_findings *found)
+{
+    return found->strategy == HELIO_STRATEGY_PRODUCT || found->strategy == HELIO_STRATEGY_PRODUCT_BRDF;
+}
+
 const char *samples_technique_name(const samples_findings *found, uint32_t technique)
 {
     if (technique == SURFACE_TECHNIQUE)
         return found->strategy == HELIO_STRATEGY_COSINE ? "cosine" : "BRDF";
-    return samples_is_by_face(found) ? face_names[technique] : "map";
+    return samples_is_by_face(found) ? face_names[technique] : is_by_bin(found) ? "bin" : "map";
 }
 
 uint32_t samples_useless(const technique_count *count)
@@ -63,6 +68,11 @@ void samples_remark(const samples_findings *found, char *text, size_t size)
     else if (samples_is_by_face(found))
         snprintf(text, size, "The face %s gives %.0f %% of all light and gets %" PRIu32 " of the %" PRIu32 " samples",
                  face_names[face], share, found->techniques[face].realised, found->sample_count);
+    else if (is_by_bin(found))
+        snprintf(text, size,
+                 "Light samples follow light and cosine for normals like the point's: %" PRIu32 " of %" PRIu32
+                 " samples are useless",
+                 useless, found->sample_count);
     else if (found->pool_count == 1)
         snprintf(text, size,
                  "Light samples follow the light alone, wherever the surface faces: %" PRIu32 " of %" PRIu32

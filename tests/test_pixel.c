@@ -194,8 +194,9 @@ static void check_pixels(setup *s, uint32_t hits[4])
 static void the_samples_of_a_pixel_sum_to_the_picture(void **state)
 {
     (void)state;
-    static const helio_strategy strategies[] = {HELIO_STRATEGY_FACE,   HELIO_STRATEGY_FACE_BRDF,  HELIO_STRATEGY_LIGHT,
-                                                HELIO_STRATEGY_COSINE, HELIO_STRATEGY_LIGHT_BRDF, HELIO_STRATEGY_BRDF};
+    static const helio_strategy strategies[] = {
+        HELIO_STRATEGY_FACE,       HELIO_STRATEGY_FACE_BRDF, HELIO_STRATEGY_LIGHT,   HELIO_STRATEGY_COSINE,
+        HELIO_STRATEGY_LIGHT_BRDF, HELIO_STRATEGY_BRDF,      HELIO_STRATEGY_PRODUCT, HELIO_STRATEGY_PRODUCT_BRDF};
     for (size_t i = 0; i < sizeof strategies / sizeof strategies[0]; i++) {
         const helio_renderer_desc desc = {.strategy = strategies[i],
                                           .spp = 24,
@@ -369,7 +370,7 @@ static void check_membership(const setup *s, const helio_pixel_step *pixel)
     assert_ok(helio_count(pools, &pixel->point, &pixel->estimate, &counts));
     assert_ok(helio_gather(pools, &pixel->point, &pixel->estimate, samples, &count));
     for (uint32_t k = 0; k < 7; k++) {
-        bool has_pool = k < helio_pools_count(pools);
+        bool has_pool = k < helio_pools_techniques(pools);
         assert_true(has_pool || counts.first[k] == 0);
         assert_true(counts.realised[k] > 0 || counts.first[k] == 0);
         for (uint32_t i = 0; i < counts.realised[k]; i++, at++) {
@@ -377,7 +378,7 @@ static void check_membership(const setup *s, const helio_pixel_step *pixel)
             helio_pool_sample pooled;
             if (!has_pool)
                 continue;
-            assert_ok(helio_pools_read(pools, k, counts.first[k] + i, 1, &pooled));
+            assert_ok(helio_pools_read(pools, counts.pool[k], counts.first[k] + i, 1, &pooled));
             assert_is_sample(s->environment, &pooled, &samples[at]);
         }
     }
@@ -387,10 +388,11 @@ static void check_membership(const setup *s, const helio_pixel_step *pixel)
 static void samples_of_a_point_are_members_of_the_pools(void **state)
 {
     (void)state;
-    static const helio_strategy strategies[] = {HELIO_STRATEGY_FACE, HELIO_STRATEGY_FACE_BRDF, HELIO_STRATEGY_LIGHT,
-                                                HELIO_STRATEGY_COSINE};
-    static const uint32_t pools[] = {6, 6, 1, 0}, lengths[] = {256, 256, 6 * 256, 256};
-    for (size_t i = 0; i < 4; i++) {
+    static const helio_strategy strategies[] = {HELIO_STRATEGY_FACE,    HELIO_STRATEGY_FACE_BRDF,
+                                                HELIO_STRATEGY_LIGHT,   HELIO_STRATEGY_COSINE,
+                                                HELIO_STRATEGY_PRODUCT, HELIO_STRATEGY_PRODUCT_BRDF};
+    static const uint32_t pools[] = {6, 6, 1, 0, 384, 384}, lengths[] = {256, 256, 6 * 256, 256, 256, 256};
+    for (size_t i = 0; i < 6; i++) {
         setup s = make_setup(&materials[1], HELIO_GROUND_NONE,
                              (helio_renderer_desc){.strategy = strategies[i], .spp = 30, .pool_length = 256});
         assert_int_equal(helio_pools_count(helio_renderer_pools(s.renderer)), pools[i]);
@@ -441,7 +443,7 @@ static void pools_read_as_the_tables_have_them(void **state)
     static helio_pool_sample samples[256];
     assert_ok(helio_tables_create(environment, HELIO_WEIGHTING_SOLID_ANGLE, &tables));
     assert_ok(helio_tables_update(tables));
-    assert_ok(helio_pools_create(tables, &(helio_pools_desc){HELIO_STRATEGY_FACE, 256}, &pools));
+    assert_ok(helio_pools_create(tables, &(helio_pools_desc){.strategy = HELIO_STRATEGY_FACE, .length = 256}, &pools));
     assert_refused(helio_pools_read(pools, 0, 0, 1, samples), "helio_pools_draw");
     assert_ok(helio_pools_draw(pools, 1, 0));
     for (uint32_t pool = 0; pool < 6; pool++) {

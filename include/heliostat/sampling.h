@@ -117,9 +117,11 @@ HELIO_API helio_status helio_pools_draw(helio_pools *pools, uint32_t seed, uint3
 /* Most samples that one gather may take from these pools: M / 8, for PRODUCT M / 4. */
 HELIO_API uint32_t helio_pools_sample_limit(const helio_pools *pools);
 
-/* How many pools there are: 6, one for each face (FACE), 1 (LIGHT), or 0. And how many samples each holds: M, or 6 M
- * where there is one. */
+/* How many pools there are: 6, one for each face (FACE), 1 (LIGHT), 6 B^2 (PRODUCT), or 0. From how many of them a
+ * point takes samples: 6, 1, 1 or 0, the first entries of helio_counts. And how many samples each holds: M, or 6 M for
+ * LIGHT. */
 HELIO_API uint32_t helio_pools_count(const helio_pools *pools);
+HELIO_API uint32_t helio_pools_techniques(const helio_pools *pools);
 HELIO_API uint32_t helio_pools_length(const helio_pools *pools);
 
 /* One sample of a pool, as every point that reads it finds it. */
@@ -169,8 +171,8 @@ typedef struct helio_estimate_desc {
 typedef struct helio_counts {
     float expected[7];
     uint32_t realised[7]; /* sums to N_s exactly, or to 0 if there is no light to sample */
-    uint32_t first[7];    /* a light technique takes samples first ... first + realised - 1 of its pool; else 0. Filled
-                             by helio_count() */
+    uint32_t pool[7];     /* that a light technique reads; else 0. Filled by helio_count(), as is: */
+    uint32_t first[7];    /* a light technique takes samples first ... first + realised - 1 of its pool; else 0 */
 } helio_counts;
 
 /* One light sample of a point. The estimate is the sum of all contributions that are visible. */

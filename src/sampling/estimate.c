@@ -420,10 +420,13 @@ helio_status helio_count(const helio_pools *pools, const helio_shading_point *po
         return fail(HELIO_ERR_ARGUMENT, "helio_count needs a place for the counts");
     HELIO_TRY(begin_checked(pools, point, desc, &g));
     *counts = g.counts;
+    memset(counts->pool, 0, sizeof counts->pool);
     memset(counts->first, 0, sizeof counts->first);
-    for (uint32_t k = 0; k < pools->count; k++)
+    for (uint32_t k = 0; k < pools->techniques; k++) {
+        counts->pool[k] = pools->bins != NULL ? g.pool : k;
         if (counts->realised[k] > 0)
-            counts->first[k] = g.windows[k] - k * pools->pool_length;
+            counts->first[k] = g.windows[k] - counts->pool[k] * pools->pool_length;
+    }
     return HELIO_OK;
 }
 

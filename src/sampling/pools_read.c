@@ -9,6 +9,11 @@ uint32_t helio_pools_count(const helio_pools *pools)
     return pools->count;
 }
 
+uint32_t helio_pools_techniques(const helio_pools *pools)
+{
+    return pools->techniques;
+}
+
 uint32_t helio_pools_length(const helio_pools *pools)
 {
     return pools->pool_length;
