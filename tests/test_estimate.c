@@ -7,7 +7,6 @@
 #include "env/environment.h"
 #include "sampling/brdf.h"
 #include "sampling/estimate.h"
-#include "sampling/kernels.h"
 #include "sampling/pools.h"
 
 #include <heliostat/heliostat.h>
@@ -136,51 +135,39 @@ static void destroy_world(world *w)
     helio_environment_destroy(w->environment);
 }
 
-/* ---- bins of normals ---- */
+/* ---- choices by chance ---- */
 
-/* The pools that a point reads, with a seed or another, and how often; pool 0 alone where that does not vary. */
-enum { MOST_POOLS = 16 };
-typedef struct pool_choice {
-    uint32_t count, pools[MOST_POOLS];
-    double shares[MOST_POOLS];
-} pool_choice;
+/* The counts of a point, its pool among them, with a seed or another, and how often. */
+enum { MOST_CHOICES = 32 };
+typedef struct count_choice {
+    uint32_t count;
+    helio_counts counts[MOST_CHOICES];
+    double shares[MOST_CHOICES];
+} count_choice;
 
-static uint32_t pool_read(const world *w, const helio_shading_point *point)
-{
-    static point_block block;
-    const helio_estimate_desc desc = {.samples = 1, .brdf_share = 0.5f};
-    block.count = 1;
-    block.seed[0] = point->seed;
-    point_vector_put(&block.normal, 0, vec3_from(point->normal));
-    point_vector_put(&block.geometric_normal, 0, vec3_from(point->geometric_normal));
-    point_vector_put(&block.view, 0, vec3_from(point->view));
-    kernels_of(ISA_SCALAR)->prepare_points(w->pools, &desc, &block);
-    return block.pools[0][0];
-}
-
-static void add_choice(pool_choice *choice, uint32_t pool, double share)
+static void add_choice(count_choice *choice, const helio_counts *counts, double share)
 {
     uint32_t k = 0;
-    while (k < choice->count && choice->pools[k] != pool)
+    while (k < choice->count &&
+           (choice->counts[k].pool[0] != counts->pool[0] || choice->counts[k].expected[6] != counts->expected[6]))
         k++;
-    assert_true(k < MOST_POOLS);
+    assert_true(k < MOST_CHOICES);
     choice->count = k == choice->count ? k + 1 : choice->count;
-    choice->pools[k] = pool;
+    choice->counts[k] = *counts;
     choice->shares[k] += share;
 }
 
 /* With the seeds seed_of(0) ... seed_of(seeds - 1). */
-static pool_choice choices_of(const world *w, const helio_shading_point *given, uint32_t (*seed_of)(uint32_t),
-                              uint32_t seeds)
+static count_choice choices_of(const world *w, const helio_shading_point *given, const helio_estimate_desc *desc,
+                               uint32_t (*seed_of)(uint32_t), uint32_t seeds)
 {
-    pool_choice choice = {.count = 1, .shares = {1.0}};
+    count_choice choice = {0};
     helio_shading_point point = *given;
-    if (w->pools->bins == NULL)
-        return choice;
-    choice = (pool_choice){0};
     for (uint32_t i = 0; i < seeds; i++) {
+        helio_counts counts;
         point.seed = seed_of(i);
-        add_choice(&choice, pool_read(w, &point), 1.0 / seeds);
+        assert_ok(helio_count(w->pools, &point, desc, &counts));
+        add_choice(&choice, &counts, 1.0 / seeds);
     }
     return choice;
 }
@@ -192,9 +179,7 @@ typedef struct quadrature {
     double variance_bound; /* of one estimate: integral of f^2 / sum_k m_k pdf_k, for independent samples */
 } quadrature;
 
-/* pool: what technique 0 reads, if it has a choice. */
-static double strategy_density(const world *w, const helio_counts *counts, const brdf *surface, vec3 map_direction,
-                               uint32_t pool)
+static double strategy_density(const world *w, const helio_counts *counts, const brdf *surface, vec3 map_direction)
 {
     cube_position at = cube_project(map_direction);
     uint32_t size = w->tables->size;
@@ -203,7 +188,7 @@ static double strategy_density(const world *w, const helio_counts *counts, const
     if (w->pools->parts.light == STRATEGY_LIGHT_FACES)
         sum = (double)counts->expected[at.face] * (double)pools_density(w->pools, at.face, &place);
     else if (w->pools->parts.light != STRATEGY_LIGHT_NONE)
-        sum = (double)counts->expected[0] * (double)pools_density(w->pools, pool, &place);
+        sum = (double)counts->expected[0] * (double)pools_density(w->pools, counts->pool[0], &place);
     if (w->pools->parts.surface == STRATEGY_SURFACE_COSINE)
         sum += (double)counts->expected[6] * fmax(0.0, (double)dot(surface->normal, map_direction)) / PI;
     else if (w->pools->parts.surface == STRATEGY_SURFACE_BRDF)
@@ -220,9 +205,8 @@ static brdf prepare(const world *w, const helio_shading_point *point, vec3 norma
     return surface;
 }
 
-/* Midpoints of a fine grid in each texel; counts and choice may be NULL if the bound is not wanted. */
-static quadrature integrate(const world *w, const helio_shading_point *point, const helio_counts *counts,
-                            const pool_choice *choice)
+/* Midpoints of a fine grid in each texel; choice may be NULL if the bound is not wanted. */
+static quadrature integrate(const world *w, const helio_shading_point *point, const count_choice *choice)
 {
     const helio_environment *environment = w->environment;
     uint32_t size = environment->size, parts = size >= 16 ? 12 : size >= 8 ? 20 : size >= 4 ? 40 : 160;
@@ -245,9 +229,9 @@ static quadrature integrate(const world *w, const helio_shading_point *point, co
                 double f = (double)radiance * (double)environment->intensity * (double)value[0] * cosine;
                 double solid_angle = cell * cell / (radius2 * sqrt(radius2));
                 result.radiance += f * solid_angle;
-                for (uint32_t k = 0; counts != NULL && k < choice->count; k++)
+                for (uint32_t k = 0; choice != NULL && k < choice->count; k++)
                     result.variance_bound += choice->shares[k] * f * f * solid_angle /
-                                             strategy_density(w, counts, &surface, direction, choice->pools[k]);
+                                             strategy_density(w, &choice->counts[k], &surface, direction);
             }
     return result;
 }
@@ -286,10 +270,8 @@ static void run_seeds(world *w, helio_shading_point points[POINTS], const helio_
 static void check_point(const world *w, const helio_shading_point *point, const helio_estimate_desc *desc,
                         const moments *sums, bool even, const char *what)
 {
-    helio_counts counts;
-    const pool_choice choice = choices_of(w, point, seed_of_run, SEEDS);
-    assert_ok(helio_count(w->pools, point, desc, &counts));
-    quadrature exact = integrate(w, point, &counts, &choice);
+    const count_choice choice = choices_of(w, point, desc, seed_of_run, SEEDS);
+    quadrature exact = integrate(w, point, &choice);
     double mean = sums->sum / SEEDS, slack = 5e-4 * exact.radiance;
     double found = fmax(0.0, sums->sum2 / SEEDS - mean * mean);
     double off = fmax(0.0, fabs(mean - exact.radiance) - slack);
@@ -389,8 +371,8 @@ static void unbiased_product_brdf(void **state)
 enum { BINS = 6 * 8 * 8, CELLS = 12 }; /* texels of a cube of size 8; quadrature cells along a texel's edge */
 
 /* Samples that each texel should get from one estimate: integral of sum_k m_k pdf_k. */
-static void expect_bins(const world *w, const helio_shading_point *point, const helio_counts *counts,
-                        const pool_choice *choice, double expected[BINS])
+static void expect_bins(const world *w, const helio_shading_point *point, const count_choice *choice,
+                        double expected[BINS])
 {
     const helio_environment *environment = w->environment;
     vec3 normal = environment_to_map(environment, vec3_from(point->normal));
@@ -405,8 +387,8 @@ static void expect_bins(const world *w, const helio_shading_point *point, const 
                 vec3 direction = cube_direction(face, (float)u, (float)v);
                 double *bin = &expected[(face * 8 + y / CELLS) * 8 + x / CELLS];
                 for (uint32_t k = 0; k < choice->count; k++)
-                    *bin += choice->shares[k] * strategy_density(w, counts, &surface, direction, choice->pools[k]) *
-                            cell * cell / (radius2 * sqrt(radius2));
+                    *bin += choice->shares[k] * strategy_density(w, &choice->counts[k], &surface, direction) * cell *
+                            cell / (radius2 * sqrt(radius2));
             }
 }
 
@@ -432,11 +414,9 @@ static void samples_follow_their_density_for_every_strategy_and_material(void **
             helio_shading_point point = points[MATERIALS]; /* tilted, seen from the side */
             point.material = *materials[m];
             double observed[BINS] = {0}, expected[BINS];
-            helio_counts counts;
             const uint32_t limit = helio_pools_sample_limit(w.pools), seeds = 2000 * 32 / limit;
-            const pool_choice choice = choices_of(&w, &point, same_seed, seeds);
-            assert_ok(helio_count(w.pools, &point, NULL, &counts));
-            expect_bins(&w, &point, &counts, &choice, expected);
+            const count_choice choice = choices_of(&w, &point, NULL, same_seed, seeds);
+            expect_bins(&w, &point, &choice, expected);
             for (uint32_t seed = 0; seed < seeds; seed++) {
                 helio_sample samples[64];
                 uint32_t count;
@@ -479,7 +459,7 @@ static void all_strategies_converge_beyond_the_pools(void **state)
         world w = make_world(context, &maps[2], HELIO_WEIGHTING_SOLID_ANGLE, strategies[s], POOL_LENGTH);
         double sums[POINTS] = {0}, errors[3] = {0};
         for (int i = 0; i < POINTS; i++)
-            exact[i] = integrate(&w, &points[i], NULL, NULL).radiance;
+            exact[i] = integrate(&w, &points[i], NULL).radiance;
         const uint32_t stops[3] = {16, 256, 4096};
         int stop = 0;
         for (uint32_t pass = 0; pass < 4096; pass++) {
@@ -555,7 +535,7 @@ static void other_furnaces_return_their_quadrature_and_no_more_than_one(void **s
     helio_shading_point points[POINTS];
     make_points(points);
     for (int i = 0; i < POINTS; i++) {
-        double sum = 0, exact = integrate(&w, &points[i], NULL, NULL).radiance;
+        double sum = 0, exact = integrate(&w, &points[i], NULL).radiance;
         for (uint32_t pass = 0; pass < 200; pass++) {
             float radiance[3];
             points[i].seed = pass;
