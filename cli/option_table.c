@@ -127,7 +127,7 @@ const cli_option option_table[] = {
      .kind = OPTION_WHOLE,
      MEMBER(day_frames),
      .group = GROUP_SEQUENCE,
-     .commands = COMMAND_RENDER | COMMAND_CONVERT | COMMAND_INSPECT},
+     .commands = COMMAND_RENDER | COMMAND_CONVERT | COMMAND_INSPECT | COMMAND_REFERENCE},
     {.name = "day-frames",
      .argument = "N",
      .shown = "6",

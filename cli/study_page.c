@@ -24,7 +24,7 @@ static const char HEAD[] =
     "h1 { font-size: 1.7rem; } h2 { font-size: 1.3rem; margin-top: 2.5rem; border-top: 1px solid #ccc; "
     "padding-top: 1rem; } h3 { font-size: 1rem; }\n"
     "table { border-collapse: collapse; margin: 0.6rem 0 1.2rem; font-variant-numeric: tabular-nums; }\n"
-    "th, td { padding: 0.15rem 0.7rem; text-align: right; border-bottom: 1px solid #e2e2e2; }\n"
+    "th, td { padding: 0.15rem 0.7rem; text-align: right; white-space: nowrap; border-bottom: 1px solid #e2e2e2; }\n"
     "th { font-weight: normal; color: #555; } th:first-child, td:first-child { text-align: left; }\n"
     "td.name { font-weight: bold; } td.best { background: #e4f2e4; } caption { text-align: left; color: #555; }\n"
     ".scroll, .charts { overflow-x: auto; } svg { max-width: 100%; height: auto; }\n"

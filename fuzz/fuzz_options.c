@@ -80,7 +80,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     if (size == 0)
         return 0;
-    unsigned command = 1u << data[0] % 8 & COMMAND_ALL;
+    unsigned command = 1u << data[0] % 16 & COMMAND_ALL;
     if (command == 0)
         command = COMMAND_RENDER;
     char *arguments[MAX_ARGUMENTS + 1];

@@ -32,8 +32,7 @@ typedef enum helio_reference_method {
 typedef struct helio_reference_desc {
     /* Environment and scene are required; the environment holds its map already, and must keep it, with its
      * orientation, for as long as the reference lives. As in helio_renderer_create(), but for these:
-     *  - strategy: HELIO_STRATEGY_AUTO, the default, is COSINE here: of all it knows least of what references are to
-     * judge
+     *  - strategy: HELIO_STRATEGY_AUTO, the default, is COSINE here, which knows least of what references are to judge
      *  - spp: light samples per pixel in a pass, default 64, divided among the camera samples; at least one for each
      *  - aa: camera samples in each pass, others in each. QUADRATURE: in all
      *  - no_visibility: QUADRATURE needs it set
@@ -41,10 +40,13 @@ typedef struct helio_reference_desc {
     helio_renderer_desc renderer;
     helio_camera camera; /* required */
     helio_reference_method method;
-    uint32_t seed;    /* of the first pass; also of the camera samples of QUADRATURE. References with seeds that are not
-                         the    same share no samples, nor do references with helio_renderer_render() */
-    double tolerance; /* QUADRATURE: grids are made finer until they change a pixel's part for one lobe by less than
-                         this part of it, 1e-9..0.1; default 1e-5. What is reached is mostly a hundred times better */
+    /* Of the first pass; also of the camera samples of QUADRATURE. References with other seeds share no passes, but by
+     * a rare chance, nor does helio_renderer_render() with small seeds. */
+    uint32_t seed;
+
+    /* QUADRATURE: grids are made finer until they change a pixel's part for one lobe by less than this part of it,
+     * 1e-9..0.1; default 1e-5. What is reached is mostly a hundred times better. */
+    double tolerance;
 } helio_reference_desc;
 
 /* Takes all memory. */
