@@ -153,7 +153,8 @@ static const list_option list_options[] = {
     {"env-size", "up to 16 whole numbers from 1 to 4096", add_env_size, false},
     {"map-size", "up to 16 sizes such as 1024x512, each from 1 to 16384", add_map_size, false},
     {"spp", "up to 16 whole numbers from 1 to 65536", add_spp, false},
-    {"strategy", "up to 16 of cosine, brdf, light, light+brdf, face, face+brdf, product, product+brdf and auto", add_strategy, false},
+    {"strategy", "up to 16 of cosine, brdf, light, light+brdf, face, face+brdf, product, product+brdf and auto",
+     add_strategy, false},
     {"material", NULL, add_material, true},
     {"mesh-size", "up to 16 whole numbers from 1 to 67108864", add_mesh_size, false},
 };

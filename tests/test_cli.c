@@ -32,7 +32,8 @@ static bool same_bytes(const char *path, const char *other_path)
 #define ALL_OPTIONS                                                                                                    \
     "--env=constant:1,1,1 --layout=auto --env-size=8 --rotate=-30.5 --flip --intensity=2 --mesh=tetrahedron.obj "      \
     "--material=file --camera=auto --ground=plane --spp=16 --aa=2 --strategy=face+brdf --brdf-share=0.25 "             \
-    "--pool-length=256 --bins=8 --weighting=paper --no-beta --decorrelate=none --visibility=none --seed=7 --size=32x24 --out=all.exr --aovs "     \
+    "--pool-length=256 --bins=8 --weighting=paper --no-beta --decorrelate=none --visibility=none --seed=7 "            \
+    "--size=32x24 --out=all.exr --aovs "                                                                               \
     "--background=env --exposure=-1.5 --tonemap=clip --stats=all.json --max-pixels=1 "                                 \
     "--frames=0..0 --day-frames=9 --on-missing=hold --transfer=pq --fps=30 --codec=ffv1 --quality=0.5 --hdr "          \
     "--contact-sheet=sheet.png --reference=reference.pfm --resume --seed-mode=frame "                                  \

@@ -235,7 +235,8 @@ static void densities_are_positive_for_every_normal_that_may_choose_the_bin(void
                              (double)direction.y, (double)direction.z, bin);
                 worst = fmax(worst, (double)(dot(normal, direction) / density) / PI);
             }
-            /* In units of an even map's mean. What is found is half of it; coarse tiles or bins do not fit a horizon. */
+            /* In units of an even map's mean. What is found is half of it; coarse tiles or bins do not fit a horizon.
+             */
             assert_true(worst < (sizes[s] >= 8 && per_edge[b] >= 8 ? 70 : 400));
             destroy_world(&w);
             free(map);
