@@ -8,6 +8,7 @@ FIGURES = figures
 DEPENDENCIES = yes
 SECONDS = 60
 TARGET =
+LINT =
 JOBS := $(shell nproc 2>/dev/null || echo 2)
 
 # Every test program prints the name of each of its tests, so show what they print.
@@ -92,7 +93,7 @@ check-format: dependencies-ci
 	@scripts/format.sh --check
 
 lint: dependencies-ci build-with-tests
-	@scripts/lint.sh $(BUILD)
+	@scripts/lint.sh $(BUILD) $(LINT)
 
 install: dependencies-build $(BUILD)/build.ninja
 	@grep -qxF 'CMAKE_INSTALL_PREFIX:PATH=$(abspath $(PREFIX))' $(BUILD)/CMakeCache.txt \
@@ -115,7 +116,7 @@ help:
 	@echo '                            feeds the parsers with damaged input, so long for each of them or for one'
 	@echo 'make core                   builds and tests the sampling core without any other library'
 	@echo 'make format, check-format   formats the code, or tells where it is not formatted'
-	@echo 'make lint                   clang-tidy and cppcheck'
+	@echo 'make lint [LINT=FOLDERS]    clang-tidy, of src and cli or of these folders, and cppcheck'
 	@echo 'make install PREFIX=DIR     installs library, headers and program (default: $(PREFIX))'
 	@echo 'make clean                  removes what was built'
 	@echo

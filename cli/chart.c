@@ -193,8 +193,8 @@ static void draw_names(const frame *area, const chart *subject)
 void chart_draw(canvas *on, const chart *subject, double x, double y)
 {
     frame area = {.on = on,
-                  .x = {INFINITY, 0, x + LEFT, x + CHART_WIDTH - RIGHT},
-                  .y = {INFINITY, 0, y + CHART_HEIGHT - BOTTOM, y + TOP}};
+                  .x = {(double)INFINITY, 0, x + LEFT, x + CHART_WIDTH - RIGHT},
+                  .y = {(double)INFINITY, 0, y + CHART_HEIGHT - BOTTOM, y + TOP}};
     find_ranges(subject, &area);
     if (subject->x_ticks != NULL)
         draw_given_ticks(&area, subject);

@@ -158,7 +158,7 @@ static study_mean mean_at(const study_record *record, uint32_t material, uint32_
 
 static double least_relmse(const study_record *record, uint32_t material, uint32_t spp, bool is_at_time)
 {
-    double least = INFINITY;
+    double least = (double)INFINITY;
     for (uint32_t s = 0; s < record->plan->strategy_count; s++)
         least = fmin(least, mean_at(record, material, s, spp, is_at_time).relmse); /* passes over NaN */
     return least;

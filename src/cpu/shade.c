@@ -218,8 +218,7 @@ static void queue_pixel(const struct frame *frame, const pixel_row *row, uint32_
     vec3 direction = {row->direction_x[i], row->direction_y[i], row->direction_z[i]};
     queue->pixels[k] = row->first + i;
     shade_point(frame, row->first + i, direction, &queue->points[k]);
-    if (row->kinds[i] == HIT_CATCHER)
-        memcpy(queue->backgrounds[k], row->background[i], sizeof queue->backgrounds[k]);
+    memcpy(queue->backgrounds[k], row->background[i], sizeof queue->backgrounds[k]);
 }
 
 static void shade_row(const struct frame *frame, const pixel_row *row, pixel_queue *queue, frame_counts *counts)

@@ -143,14 +143,15 @@ void KERNEL(round_counts)(uint32_t samples, point_block *block)
         sums[i] = (double)block->rounding[i] + 0x1p-25;
         given[i] = 0;
     }
-    for (int32_t k = 0; k < TECHNIQUES; k++)
+    for (int32_t k = 0; k < TECHNIQUES; k++) {
 #pragma omp simd
         for (uint32_t i = 0; i < count; i++)
             scales[i] += (double)block->expected[k][i];
+    }
 #pragma omp simd
     for (uint32_t i = 0; i < count; i++)
         scales[i] = scales[i] > 0.0 ? (double)samples / (scales[i] > 0.0 ? scales[i] : 1.0) : 0.0;
-    for (int32_t k = 0; k < TECHNIQUES; k++)
+    for (int32_t k = 0; k < TECHNIQUES; k++) {
 #pragma omp simd
         for (uint32_t i = 0; i < count; i++) {
             sums[i] += (double)block->expected[k][i] * scales[i];
@@ -158,6 +159,7 @@ void KERNEL(round_counts)(uint32_t samples, point_block *block)
             block->realised[k][i] = (uint32_t)(up_to - given[i]);
             given[i] = up_to;
         }
+    }
 }
 
 /* ---- windows ---- */

@@ -44,8 +44,8 @@ static float tile_radius(const tiles *t, uint32_t row, uint32_t column)
     float least = 1.0f, scale = 2.0f / (float)t->size;
     vec3 centre = tile_centre(t, 0, row, column);
     for (uint32_t corner = 0; corner < 4; corner++) {
-        float u = (float)t->starts[column + corner % 2] * scale - 1.0f;
-        float v = (float)t->starts[row + corner / 2] * scale - 1.0f;
+        uint32_t right = corner & 1u, below = corner >> 1;
+        float u = (float)t->starts[column + right] * scale - 1.0f, v = (float)t->starts[row + below] * scale - 1.0f;
         least = fminf(least, dot(centre, cube_direction(0, u, v)));
     }
     return acosf(least);
