@@ -9,6 +9,7 @@ DEPENDENCIES = yes
 SECONDS = 60
 TARGET =
 LINT =
+SAN_SKIP =
 JOBS := $(shell nproc 2>/dev/null || echo 2)
 
 # Every test program prints the name of each of its tests, so show what they print.
@@ -68,13 +69,15 @@ test-long: build-with-tests
 
 san: dependencies-test build-asan/build.ninja
 	@cmake --build build-asan
-	@cd build-asan && $(CTEST) --label-exclude long
+	@cd build-asan && $(CTEST) --label-exclude long $(if $(SAN_SKIP),--exclude-regex '^($(SAN_SKIP))$$')
 
 # What shares data between threads, and by test_frame and test_cli whole pictures: test_render would take ten times as
 # long.
+TSAN_TESTS = core environment source video_files tables pools isa rays frame hostile comparison cli
+space := $(subst ,, )
 tsan: dependencies-test build-tsan/build.ninja
-	@cmake --build build-tsan
-	@cd build-tsan && $(CTEST) --tests-regex '^test_(core|environment|source|video_files|tables|pools|isa|rays|frame|hostile|comparison|cli)$$|^(sequence|reference)_threads$$'
+	@cmake --build build-tsan --target $(TSAN_TESTS:%=test_%) test_sequence test_reference
+	@cd build-tsan && $(CTEST) --tests-regex '^test_($(subst $(space),|,$(strip $(TSAN_TESTS))))$$|^(sequence|reference)_threads$$'
 
 # Each target for so long, or one of them alone; docs/fuzzing.md tells more.
 fuzz: dependencies-ci build-fuzz/build.ninja
