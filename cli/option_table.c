@@ -745,7 +745,7 @@ const cli_option option_table[] = {
     {.name = "strategy",
      .argument = "S",
      .shown = "cosine",
-     .choices = "cosine brdf light light+brdf face face+brdf",
+     .choices = "cosine brdf light light+brdf face face+brdf product product+brdf",
      .help = "take random samples by another strategy than cosine, which may need far fewer of them; in place of "
              "--method",
      .kind = OPTION_CHOICE,
