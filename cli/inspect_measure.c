@@ -15,6 +15,8 @@ double inspect_luminance(const float rgb[3])
 
 /* ---- what kind of file it is ------------------------------------------------------------ */
 
+static const char SIX_FILES[] = "six files";
+
 typedef struct file_mark {
     const char *bytes;
     size_t length;
@@ -39,7 +41,7 @@ static const char *kind_of_file(const char *path)
     for (size_t i = 0; i < sizeof marks / sizeof marks[0]; i++)
         if (length >= marks[i].length && memcmp(start, marks[i].bytes, marks[i].length) == 0)
             return marks[i].kind;
-    return "six files";
+    return SIX_FILES;
 }
 
 static const char *kind_of(const inspect_subject *subject)
@@ -57,6 +59,14 @@ static const char *kind_of(const inspect_subject *subject)
     return kind_of_file(subject->frame->name);
 }
 
+/* What six files hold is called faces, though in memory it is the same as a strip. */
+static helio_layout layout_of(const inspect_subject *subject)
+{
+    if (subject->frame->rgb == NULL)
+        return HELIO_LAYOUT_AUTO;
+    return kind_of(subject) == SIX_FILES ? HELIO_LAYOUT_FACES : subject->frame->layout;
+}
+
 static const char *why_layout(const inspect_subject *subject)
 {
     const helio_source_frame *frame = subject->frame;
@@ -68,7 +78,7 @@ static const char *why_layout(const inspect_subject *subject)
     if (subject->layout_is_given)
         return "as --layout says";
     bool is_guessed = helio_layout_guess(frame->width, frame->height, HELIO_LAYOUT_AUTO, &guessed) == HELIO_OK;
-    return is_guessed && guessed == frame->layout ? "by its shape" : "as its files say";
+    return is_guessed && guessed == layout_of(subject) ? "by its shape" : "as its files say";
 }
 
 /* ---- pixels ------------------------------------------------------------------------------ */
@@ -228,7 +238,7 @@ bool inspect_measure(const inspect_subject *subject, inspect_findings *found)
         .name = frame->name,
         .file_kind = kind_of(subject),
         .layout_why = why_layout(subject),
-        .layout = frame->rgb != NULL ? frame->layout : HELIO_LAYOUT_AUTO,
+        .layout = layout_of(subject),
         .width = frame->width,
         .height = frame->height,
         .cube_size = helio_environment_cube_size(subject->environment),

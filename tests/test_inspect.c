@@ -348,6 +348,17 @@ static void layouts_are_told_with_the_reason(void **state)
     }
 }
 
+static void six_files_are_called_faces(void **state)
+{
+    (void)state;
+    succeeds("convert constant:1,2,3 --to faces --env-size 2 --out cube_%s.hdr");
+    json_t *seen = inspect("cube_%s.hdr");
+    assert_string_equal(text_of(member(seen, "file"), "kind"), "six files");
+    assert_string_equal(text_of(member(seen, "layout"), "name"), "faces");
+    assert_string_equal(text_of(member(seen, "layout"), "found"), "as its files say");
+    json_decref(seen);
+}
+
 static void skies_and_sequences_can_be_inspected(void **state)
 {
     (void)state;
@@ -511,6 +522,7 @@ int main(void)
         program_test(white_is_clipped_in_eight_bits),
         program_test(captured_suns_are_whole_and_their_clipped_copies_are_not),
         program_test(layouts_are_told_with_the_reason),
+        program_test(six_files_are_called_faces),
         program_test(skies_and_sequences_can_be_inspected),
         program_test(json_goes_to_standard_output_for_a_dash),
         program_test(text_tells_what_json_tells),
