@@ -98,6 +98,8 @@ static void tell_success(const render_sequence *sequence)
     if (job->plan.sink == SINK_PICTURE)
         printf("%s: %" PRIu32 "x%" PRIu32 ", %.2f s, strategy %s\n", job->plan.out, size[0], size[1], seconds,
                strategy);
+    else if (sequence->sink.written == 0)
+        printf("%s: %s, %" PRIu32 "x%" PRIu32 ", all of an earlier run\n", job->plan.out, frames, size[0], size[1]);
     else
         printf("%s: %s, %" PRIu32 "x%" PRIu32 ", %.2f s, %.3g frames/s, strategy %s\n", job->plan.out, frames, size[0],
                size[1], seconds, (double)sequence->sink.written / seconds, strategy);

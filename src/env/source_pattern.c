@@ -143,7 +143,7 @@ static helio_status search_directory(number_search *search, DIR *directory)
             HELIO_TRY(add_number(search, number));
     }
     if (search->found.count == 0)
-        return fail(HELIO_ERR_IO, "there is no file whose name is %s, a number and \"%s\"", search->pattern->before,
+        return fail(HELIO_ERR_IO, "there is no file whose name is \"%s\", a number and \"%s\"", search->pattern->before,
                     search->pattern->after);
     qsort(search->found.numbers, search->found.count, sizeof *search->found.numbers, compare_numbers);
     return HELIO_OK;
