@@ -293,7 +293,7 @@ static void mistakes_are_told(void **state)
         {"reference --method quadrature --visibility none --time 4", "leave --time away"},
         {"reference --method cosine --strategy face", "give one of them"},
         {"reference --method exact", "cosine or quadrature"},
-        {"reference --strategy auto", "face or face+brdf"},
+        {"reference --strategy auto", "product or product+brdf"},
         {"reference --spp 0", "whole number"},
         {"reference --error 1", "--error"},
         {"reference --out a.mp4", "video"},
