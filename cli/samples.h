@@ -49,7 +49,7 @@ typedef struct samples_findings {
     uint32_t passes;                      /* each has pools of its own */
     uint32_t pool_count, pool_length;     /* pools that the point reads in a pass, samples of a pool */
     uint32_t pooled;                      /* samples of these pools; there are none of faces without light */
-    helio_pool_sample *pools;             /* [passes][pool_count][pool_length] */
+    helio_pool_sample *pools;             /* [pooled] */
     uint32_t sample_count, capacity;      /* samples; room for them */
     point_sample *samples;                /* [sample_count] */
     technique_count techniques[TECHNIQUES], all;

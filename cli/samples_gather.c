@@ -23,10 +23,8 @@ bool samples_make(samples_findings *found, const render_job *job)
         .pool_length = helio_pools_length(pools),
         .capacity = job->plan.options->spp,
     };
-    size_t pool_samples = (size_t)found->passes * found->pool_count * found->pool_length;
-    found->pools = malloc((pool_samples > 0 ? pool_samples : 1) * sizeof *found->pools);
     found->samples = malloc(found->capacity * sizeof *found->samples);
-    return found->pools != NULL && found->samples != NULL;
+    return found->samples != NULL;
 }
 
 void samples_release(samples_findings *found)
@@ -50,18 +48,33 @@ typedef struct gathered_step {
     uint32_t count;
 } gathered_step;
 
+/* Appends what a pool holds. */
+static helio_status read_pool(samples_findings *found, const helio_pools *pools, uint32_t pool)
+{
+    helio_pool_sample *grown =
+        realloc(found->pools, ((size_t)found->pooled + found->pool_length + 1) * sizeof *found->pools);
+    if (grown == NULL)
+        return HELIO_ERR_MEMORY;
+    found->pools = grown;
+    helio_pool_sample *to = found->pools + found->pooled;
+    helio_status status = helio_pools_read(pools, pool, 0, found->pool_length, to);
+    for (uint32_t i = 0; status == HELIO_OK && i < found->pool_length; i++)
+        if (to[i].density > 0) /* there is none in a pool without light */
+            found->pools[found->pooled++] = to[i];
+    return status;
+}
+
 /* Those that the point reads. */
 static helio_status read_pools(samples_findings *found, const gathered_step *step)
 {
-    for (uint32_t k = 0; k < found->pool_count; k++) {
-        helio_pool_sample *to = found->pools + ((size_t)step->number * found->pool_count + k) * found->pool_length;
-        helio_status status = helio_pools_read(step->pools, step->counts.pool[k], 0, found->pool_length, to);
-        if (status != HELIO_OK)
-            return status;
-        for (uint32_t i = 0; i < found->pool_length; i++)
-            found->pooled += to[i].density > 0;
+    helio_status status = HELIO_OK;
+    for (uint32_t k = 0; k < found->pool_count && status == HELIO_OK; k++) {
+        const uint32_t pool = step->counts.pool[k];
+        found->pool_length =
+            pool == HELIO_POOL_OF_TILES ? helio_pools_listed(step->pools) : helio_pools_length(step->pools);
+        status = read_pool(found, step->pools, pool);
     }
-    return HELIO_OK;
+    return status;
 }
 
 static float dot(const float a[3], const float b[3])
@@ -90,9 +103,7 @@ static void find_texel(const helio_environment *environment, point_sample *sampl
     sample->face = (uint32_t)(texel / size / size);
 }
 
-/* taken: how many of its technique came before it in this step. */
-static point_sample describe(const samples_findings *found, const gathered_step *step, const helio_sample *sample,
-                             uint32_t taken)
+static point_sample describe(const samples_findings *found, const gathered_step *step, const helio_sample *sample)
 {
     point_sample described = {
         .density = (double)sample->density / step->share,
@@ -105,9 +116,10 @@ static point_sample describe(const samples_findings *found, const gathered_step 
         described.contribution[c] = (double)sample->contribution[c] * step->share;
     if (sample->technique < found->pool_count) {
         described.pool = sample->technique;
-        described.number = step->counts.first[sample->technique] + taken;
-        size_t index = ((size_t)step->number * found->pool_count + described.pool) * found->pool_length;
-        memcpy(described.direction, found->pools[index + described.number].direction, sizeof described.direction);
+        described.number = sample->number;
+        helio_pool_sample pooled = {0}; /* as it is there, not turned to and fro */
+        helio_pools_read(step->pools, step->counts.pool[sample->technique], sample->number, 1, &pooled);
+        memcpy(described.direction, pooled.direction, sizeof described.direction);
     } else {
         helio_environment_to_map(step->environment, sample->direction, described.direction);
     }
@@ -152,9 +164,8 @@ static void count_sample(samples_findings *found, const point_sample *sample)
 static void add_step(samples_findings *found, const gathered_step *step)
 {
     point_sample *samples = found->samples + found->sample_count;
-    uint32_t taken[TECHNIQUES] = {0};
     for (uint32_t i = 0; i < step->count; i++)
-        samples[i] = describe(found, step, &step->samples[i], taken[step->samples[i].technique]++);
+        samples[i] = describe(found, step, &step->samples[i]);
     for (uint32_t first = 0; step->pixel->estimate.visibility != NULL && first < step->count; first += MOST_RAYS)
         find_shadows(step->pixel, samples + first, step->count - first < MOST_RAYS ? step->count - first : MOST_RAYS);
     for (uint32_t i = 0; i < step->count; i++)

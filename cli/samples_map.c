@@ -137,12 +137,9 @@ static void place(const samples_drawing *d, const float direction[3], double *x,
 void samples_draw_pools(const samples_drawing *d)
 {
     const samples_findings *found = d->view->found;
-    size_t count = (size_t)found->passes * found->pool_count * found->pool_length;
     cairo_new_path(d->cairo);
-    for (size_t i = 0; i < count; i++) {
+    for (uint32_t i = 0; i < found->pooled; i++) {
         double x, y;
-        if (!(found->pools[i].density > 0)) /* of a face without light */
-            continue;
         place(d, found->pools[i].direction, &x, &y);
         samples_add_dot(d->cairo, x, y);
     }

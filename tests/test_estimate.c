@@ -7,7 +7,7 @@
 #include "env/environment.h"
 #include "sampling/brdf.h"
 #include "sampling/estimate.h"
-#include "sampling/pools.h"
+#include "sampling/kernels.h"
 
 #include <heliostat/heliostat.h>
 
@@ -179,14 +179,31 @@ typedef struct quadrature {
     double variance_bound; /* of one estimate: integral of f^2 / sum_k m_k pdf_k, for independent samples */
 } quadrature;
 
-static double strategy_density(const world *w, const helio_counts *counts, const brdf *surface, vec3 map_direction)
+/* What techniques draw by, for one point. */
+typedef struct drawing_surface {
+    brdf surface; /* as the surface technique draws */
+    bool has_tiles;
+    point_tiles tiles;
+} drawing_surface;
+
+static double tiles_density_of(const world *w, const drawing_surface *s, const face_place *at)
 {
+    const tiles *t = w->pools->bins->tiles;
+    return (double)point_tiles_probability(&s->tiles, tiles_position(t, at->face, at->row, at->column)) *
+           (double)tiles_density(t, w->tables, at);
+}
+
+static double strategy_density(const world *w, const helio_counts *counts, const drawing_surface *s, vec3 map_direction)
+{
+    const brdf *surface = &s->surface;
     cube_position at = cube_project(map_direction);
     uint32_t size = w->tables->size;
     const face_place place = {at.face, cube_texel(at.v, size), cube_texel(at.u, size), at.u, at.v};
     double sum = 0;
     if (w->pools->parts.light == STRATEGY_LIGHT_FACES)
         sum = (double)counts->expected[at.face] * (double)pools_density(w->pools, at.face, &place);
+    else if (counts->pool[0] == HELIO_POOL_OF_TILES)
+        sum = (double)counts->expected[0] * tiles_density_of(w, s, &place);
     else if (w->pools->parts.light != STRATEGY_LIGHT_NONE)
         sum = (double)counts->expected[0] * (double)pools_density(w->pools, counts->pool[0], &place);
     if (w->pools->parts.surface == STRATEGY_SURFACE_COSINE)
@@ -196,13 +213,17 @@ static double strategy_density(const world *w, const helio_counts *counts, const
     return sum;
 }
 
-/* As the surface technique of these pools draws. */
-static brdf prepare(const world *w, const helio_shading_point *point, vec3 normal, vec3 view)
+static void prepare(const world *w, const helio_shading_point *point, vec3 normal, vec3 view, drawing_surface *s)
 {
-    brdf surface = brdf_prepare(&point->material, normal, view);
-    if (w->pools->bins != NULL)
-        surface.specular_share = 1.0f;
-    return surface;
+    s->surface = brdf_prepare(&point->material, normal, view);
+    s->has_tiles = w->pools->bins != NULL && w->pools->parts.surface == STRATEGY_SURFACE_BRDF &&
+                   s->surface.kind != HELIO_MATERIAL_DIFFUSE;
+    if (!s->has_tiles)
+        return;
+    tile_lobe lobe;
+    tile_lobe_prepare(&lobe, w->pools->bins->tiles, &s->surface);
+    kernels_of(ISA_SCALAR)->weigh_point(w->pools->bins->tiles, &lobe, &s->tiles);
+    s->surface.specular_share = 1.0f;
 }
 
 /* Midpoints of a fine grid in each texel; choice may be NULL if the bound is not wanted. */
@@ -213,7 +234,8 @@ static quadrature integrate(const world *w, const helio_shading_point *point, co
     vec3 normal = environment_to_map(environment, vec3_from(point->normal));
     vec3 flat = environment_to_map(environment, vec3_from(point->geometric_normal));
     vec3 view = brdf_lift_view(normal, environment_to_map(environment, vec3_from(point->view)));
-    brdf surface = prepare(w, point, normal, view);
+    static drawing_surface surface;
+    prepare(w, point, normal, view, &surface);
     quadrature result = {0, 0};
     double cell = 2.0 / (size * parts);
     for (uint32_t face = 0; face < 6; face++)
@@ -225,7 +247,7 @@ static quadrature integrate(const world *w, const helio_shading_point *point, co
                 float value[3], radiance = environment_texel(environment, face, y / parts, x / parts)[0];
                 if (!(cosine > 0) || !(dot(flat, direction) > 0.0f) || !(radiance > 0.0f))
                     continue;
-                brdf_value(&surface, direction, value);
+                brdf_value(&surface.surface, direction, value);
                 double f = (double)radiance * (double)environment->intensity * (double)value[0] * cosine;
                 double solid_angle = cell * cell / (radius2 * sqrt(radius2));
                 result.radiance += f * solid_angle;
@@ -377,7 +399,8 @@ static void expect_bins(const world *w, const helio_shading_point *point, const 
     const helio_environment *environment = w->environment;
     vec3 normal = environment_to_map(environment, vec3_from(point->normal));
     vec3 view = brdf_lift_view(normal, environment_to_map(environment, vec3_from(point->view)));
-    brdf surface = prepare(w, point, normal, view);
+    static drawing_surface surface;
+    prepare(w, point, normal, view, &surface);
     double cell = 2.0 / (8 * CELLS);
     memset(expected, 0, BINS * sizeof *expected);
     for (uint32_t face = 0; face < 6; face++)

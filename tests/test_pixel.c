@@ -378,7 +378,9 @@ static void check_membership(const setup *s, const helio_pixel_step *pixel)
             helio_pool_sample pooled;
             if (!has_pool)
                 continue;
-            assert_ok(helio_pools_read(pools, counts.pool[k], counts.first[k] + i, 1, &pooled));
+            if (counts.pool[k] != HELIO_POOL_OF_TILES)
+                assert_int_equal(samples[at].number, counts.first[k] + i);
+            assert_ok(helio_pools_read(pools, counts.pool[k], samples[at].number, 1, &pooled));
             assert_is_sample(s->environment, &pooled, &samples[at]);
         }
     }

@@ -124,15 +124,22 @@ HELIO_API uint32_t helio_pools_count(const helio_pools *pools);
 HELIO_API uint32_t helio_pools_techniques(const helio_pools *pools);
 HELIO_API uint32_t helio_pools_length(const helio_pools *pools);
 
+/* In PRODUCT_BRDF a point that shines reads no pool: it weighs tiles of the map by light x BRDF x cosine itself, and
+ * takes samples from the lists of these tiles. helio_counts then names this as its pool. */
+#define HELIO_POOL_OF_TILES 0xffffffffu
+
+/* How many samples the lists of the tiles hold together in this frame; 0 where there are none. */
+HELIO_API uint32_t helio_pools_listed(const helio_pools *pools);
+
 /* One sample of a pool, as every point that reads it finds it. */
 typedef struct helio_pool_sample {
     float direction[3]; /* in the map's space: before orientation */
     float radiance[3];  /* of the texel, without intensity */
-    float density;      /* 1/sr, given the pool; 0 in a pool without light */
+    float density;      /* 1/sr, given the pool, or the tile for HELIO_POOL_OF_TILES; 0 in a pool without light */
 } helio_pool_sample;
 
-/* Copies samples first ... first + count - 1 of a pool. samples: [count]. HELIO_ERR_ARGUMENT where there are no such
- * samples, and before the first draw. */
+/* Copies samples first ... first + count - 1 of a pool, or for HELIO_POOL_OF_TILES of the lists of all tiles. samples:
+ * [count]. HELIO_ERR_ARGUMENT where there are no such samples, and before the first draw. */
 HELIO_API helio_status helio_pools_read(const helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count,
                                         helio_pool_sample *samples);
 
@@ -158,8 +165,9 @@ typedef void (*helio_visibility)(void *user, const helio_shading_point *point, u
 
 typedef struct helio_estimate_desc {
     uint32_t samples; /* N_s, light + BRDF samples, 1..helio_pools_sample_limit(); default 64 or that limit */
-    float brdf_share; /* part of N_s for the BRDF in ..._BRDF, 0 < share < 1; default 0.5. In PRODUCT_BRDF for
-                                    surfaces that are all specular; less for others, 0 for matte ones */
+    float brdf_share; /* part of N_s for the BRDF in ..._BRDF, 0 < share < 1; default 0.5. PRODUCT_BRDF finds a
+                                    part of its own for each point, 0 for matte ones, which this moves: its odds are
+                                    multiplied by those of the share */
     bool no_beta;     /* spread samples by flux alone over the faces that reach above the horizon: shows the
                                     discontinuities of the paper's supplement, Figure 1 */
     helio_visibility visibility; /* default: nothing is in the way */
@@ -167,12 +175,14 @@ typedef struct helio_estimate_desc {
 } helio_estimate_desc;
 
 /* Expected counts m and realised counts of the techniques that share N_s: faces 0..5 (FACE), or the whole map (LIGHT)
- * or the pool of the point's bin (PRODUCT) in entry 0, and the BRDF or cosine technique in entry 6. */
+ * or the pool of the point's bin or its tiles (PRODUCT) in entry 0, and the BRDF or cosine technique in entry 6. */
 typedef struct helio_counts {
     float expected[7];
     uint32_t realised[7]; /* sums to N_s exactly, or to 0 if there is no light to sample */
-    uint32_t pool[7];     /* that a light technique reads; else 0. Filled by helio_count(), as is: */
-    uint32_t first[7];    /* a light technique takes samples first ... first + realised - 1 of its pool; else 0 */
+    uint32_t pool[7];     /* that a light technique reads, or HELIO_POOL_OF_TILES; else 0. Filled by helio_count(),
+                             as is: */
+    uint32_t first[7];    /* a light technique takes samples first ... first + realised - 1 of its pool; else 0, and
+                             for HELIO_POOL_OF_TILES */
 } helio_counts;
 
 /* One light sample of a point. The estimate is the sum of all contributions that are visible. */
@@ -181,6 +191,7 @@ typedef struct helio_sample {
     float contribution[3]; /* radiance x BRDF x cosine / sum_k m_k pdf_k: the balance heuristic, already divided */
     float density;         /* sum_k m_k pdf_k, 1/sr: the samples' total density at this direction */
     uint32_t technique;    /* entry of helio_counts that drew it */
+    uint32_t number;       /* of a light technique: in its pool; else 0 */
 } helio_sample;
 
 /* How a point divides its samples. */

@@ -50,20 +50,22 @@ helio_status estimate_resolve(const helio_pools *pools, const helio_estimate_des
 
 /* ---- points side by side ---- */
 
-/* Pools of bins hold the product of light and cosine, so that BRDF samples have only the specular lobe to look after:
- * the fewer, the less of the reflected light is its part s. Between s and its root, as a lobe that is weak, but sharp,
- * still needs some (docs/method.md). Rounded to a power of two, up or down by chance, as such numbers of samples are
- * nets. */
-static float specular_need(const helio_shading_point *point)
+/* Pools of bins hold the product of light and cosine, and tiles that of light and BRDF, so that BRDF samples have only
+ * the specular lobe to look after, the more the narrower it is. */
+static float specular_need(const tiles *t, const helio_shading_point *point)
 {
     if (point->material.kind == HELIO_MATERIAL_DIFFUSE)
         return 0.0f;
     vec3 normal = vec3_from(point->normal), view = brdf_lift_view(normal, vec3_from(point->view));
-    float specular = brdf_prepare(&point->material, normal, view).specular_share;
-    if (!(specular > 0.0f))
-        return 0.0f;
-    float need = 0.5f * (specular + sqrtf(specular)), random = unit_float(hash_combine(point->seed, STREAM_SPLIT));
-    return ldexpf(1.0f, -(int)(random - log2_fast(need)));
+    brdf surface = brdf_prepare(&point->material, normal, view);
+    return tile_lobe_need(t, &surface);
+}
+
+/* need is what is best at an even split; any other moves the odds. */
+static float share_of_need(float need, float even)
+{
+    float for_surface = need * even, for_light = (1.0f - need) * (1.0f - even);
+    return for_surface > 0.0f ? for_surface / (for_surface + for_light) : 0.0f;
 }
 
 /* Part of a point's samples that the surface technique takes. */
@@ -73,7 +75,9 @@ static float surface_share(const helio_pools *pools, const helio_shading_point *
         return 1.0f;
     if (pools->parts.surface == STRATEGY_SURFACE_NONE)
         return 0.0f;
-    return desc->brdf_share * (pools->bins != NULL ? specular_need(point) : 1.0f);
+    if (pools->bins == NULL)
+        return desc->brdf_share;
+    return share_of_need(specular_need(pools->bins->tiles, point), desc->brdf_share);
 }
 
 /* Counts and windows of the points, and their directions in the map's space. */
@@ -121,7 +125,7 @@ static void begin_surface_samples(gathering *g, uint32_t seed)
         g->proposal = brdf_prepare(&matte, g->surface.normal, g->surface.view);
     } else {
         brdf_prepare_share(&g->surface);
-        if (g->pools->bins != NULL)
+        if (g->has_tiles)
             g->surface.specular_share = 1.0f; /* only what the pools do not know; there is a specular lobe, or no
                                                  sample would be taken */
         g->proposal = g->surface;
@@ -129,6 +133,20 @@ static void begin_surface_samples(gathering *g, uint32_t seed)
     g->proposal_axes = brdf_find_axes(&g->proposal);
     g->surface_seed = hash_combine(seed, STREAM_SURFACE);
     expect_in_faces(g);
+}
+
+/* A point that shines, of a strategy with pools of bins and BRDF samples, reads no pool but weighs tiles. */
+static void begin_tiles(gathering *g, uint32_t seed)
+{
+    const tiles *t = g->pools->bins->tiles;
+    brdf surface = g->surface;
+    tile_lobe lobe;
+    brdf_prepare_share(&surface);
+    tile_lobe_prepare(&lobe, t, &surface);
+    kernels_of(context_isa(g->environment->context))->weigh_point(t, &lobe, &g->tiles);
+    g->tile_random = hash_combine(seed, STREAM_WINDOW);
+    if (g->tiles.total == 0) /* as for a bin that is lit, but only below the horizon of this normal */
+        g->counts = (helio_counts){0};
 }
 
 /* For point i of a block that is prepared. */
@@ -146,6 +164,9 @@ static void begin(gathering *g, const helio_pools *pools, const helio_shading_po
     for (uint32_t k = 0; k < pools->techniques; k++)
         g->windows[k] = block->windows[k][i];
     g->pool = block->pools[0][i];
+    g->has_tiles = pools->bins != NULL && block->surface_share[i] > 0.0f;
+    if (g->has_tiles)
+        begin_tiles(g, point->seed);
     if (g->counts.expected[TECHNIQUE_SURFACE] > 0.0f)
         begin_surface_samples(g, point->seed);
 }
@@ -168,21 +189,29 @@ static uint32_t take_some(const gathering *g, uint32_t room, sample_cursor *curs
     return count;
 }
 
-/* The next samples, as many as fit, and what each contributes; false if there are none left. */
-static bool next_block(const gathering *g, const kernel_set *kernels, sample_cursor *cursor, sample_block *block)
+/* The next samples of the light techniques, as many as fit. */
+static void take_light(const gathering *g, const kernel_set *kernels, sample_cursor *cursor, sample_block *block)
 {
     pool_piece pieces[CUBE_FACES];
     uint32_t piece_count = 0, room = BLOCK_SAMPLES;
-    block->count = 0;
     while (cursor->technique < TECHNIQUE_SURFACE && room > 0) {
         uint32_t technique = cursor->technique, first = cursor->taken, count = take_some(g, room, cursor);
         room -= count;
-        if (count > 0)
+        if (count > 0 && g->has_tiles)
+            kernels->take_tiles(g, first, count, block);
+        else if (count > 0)
             pieces[piece_count++] = (pool_piece){technique, g->windows[technique] + first, count};
     }
     kernels->take_pools(g, pieces, piece_count, block);
-    if (cursor->technique == TECHNIQUE_SURFACE && room > 0) {
-        uint32_t first = cursor->taken, count = take_some(g, room, cursor);
+}
+
+/* The next samples, as many as fit, and what each contributes; false if there are none left. */
+static bool next_block(const gathering *g, const kernel_set *kernels, sample_cursor *cursor, sample_block *block)
+{
+    block->count = 0;
+    take_light(g, kernels, cursor, block);
+    if (cursor->technique == TECHNIQUE_SURFACE && block->count < BLOCK_SAMPLES) {
+        uint32_t first = cursor->taken, count = take_some(g, BLOCK_SAMPLES - block->count, cursor);
         if (count > 0)
             kernels->draw_surface(g, first, count, block);
     }
@@ -412,6 +441,19 @@ static helio_status begin_checked(const helio_pools *pools, const helio_shading_
     return HELIO_OK;
 }
 
+static uint32_t pool_of(const gathering *g, uint32_t technique)
+{
+    if (g->has_tiles)
+        return HELIO_POOL_OF_TILES;
+    return g->pools->bins != NULL ? g->pool : technique;
+}
+
+/* In its pool. */
+static uint32_t first_of(const gathering *g, uint32_t technique)
+{
+    return g->has_tiles ? 0 : g->windows[technique] - pool_of(g, technique) * g->pools->pool_length;
+}
+
 helio_status helio_count(const helio_pools *pools, const helio_shading_point *point, const helio_estimate_desc *desc,
                          helio_counts *counts)
 {
@@ -423,14 +465,22 @@ helio_status helio_count(const helio_pools *pools, const helio_shading_point *po
     memset(counts->pool, 0, sizeof counts->pool);
     memset(counts->first, 0, sizeof counts->first);
     for (uint32_t k = 0; k < pools->techniques; k++) {
-        counts->pool[k] = pools->bins != NULL ? g.pool : k;
+        counts->pool[k] = pool_of(&g, k);
         if (counts->realised[k] > 0)
-            counts->first[k] = g.windows[k] - counts->pool[k] * pools->pool_length;
+            counts->first[k] = first_of(&g, k);
     }
     return HELIO_OK;
 }
 
-static void write_sample(const gathering *g, const sample_block *block, uint32_t i, uint32_t technique,
+/* taken: how many samples of the technique came before. */
+static uint32_t number_of(const gathering *g, const sample_block *block, uint32_t i, uint32_t technique, uint32_t taken)
+{
+    if (technique == TECHNIQUE_SURFACE)
+        return 0;
+    return g->has_tiles ? block->listed[i] : first_of(g, technique) + taken;
+}
+
+static void write_sample(const gathering *g, const sample_block *block, uint32_t i, uint32_t technique, uint32_t taken,
                          helio_sample *sample)
 {
     vec3_to(block_direction(g, block, i), sample->direction);
@@ -439,6 +489,7 @@ static void write_sample(const gathering *g, const sample_block *block, uint32_t
     sample->contribution[2] = block->blue[i];
     sample->density = block->density[i];
     sample->technique = technique;
+    sample->number = number_of(g, block, i, technique, taken);
 }
 
 helio_status helio_gather(const helio_pools *pools, const helio_shading_point *point, const helio_estimate_desc *desc,
@@ -446,16 +497,18 @@ helio_status helio_gather(const helio_pools *pools, const helio_shading_point *p
 {
     gathering g;
     sample_block block;
-    uint32_t taken = 0, technique = 0, end = 0; /* of the samples of techniques 0 ... technique - 1 */
+    uint32_t taken = 0, technique = 0, start = 0, end = 0; /* of the samples of technique - 1 */
     if (samples == NULL || count == NULL)
         return fail(HELIO_ERR_ARGUMENT, "helio_gather needs places for samples and their count");
     HELIO_TRY(begin_checked(pools, point, desc, &g));
     const kernel_set *kernels = kernels_of(context_isa(g.environment->context));
     for (sample_cursor cursor = {0}; next_block(&g, kernels, &cursor, &block);)
         for (uint32_t i = 0; i < block.count; i++, taken++) {
-            while (taken == end)
+            while (taken == end) {
+                start = end;
                 end += g.counts.realised[technique++];
-            write_sample(&g, &block, i, technique - 1, &samples[taken]);
+            }
+            write_sample(&g, &block, i, technique - 1, taken - start, &samples[taken]);
         }
     *count = taken;
     return HELIO_OK;

@@ -5,6 +5,7 @@
 #define HELIOSTAT_SRC_GATHERING_H
 
 #include "sampling/brdf.h"
+#include "sampling/point_tiles.h"
 #include "sampling/pools.h"
 
 #include <stdalign.h>
@@ -15,7 +16,7 @@ enum {
 };
 
 /* Streams of random numbers of a point. */
-enum { STREAM_ROUNDING = 1, STREAM_SURFACE, STREAM_WINDOW, STREAM_BIN, STREAM_SPLIT };
+enum { STREAM_ROUNDING = 1, STREAM_SURFACE, STREAM_WINDOW, STREAM_BIN };
 
 /* What is known about a point before its samples. All directions are in the map's space. */
 typedef struct gathering {
@@ -30,7 +31,25 @@ typedef struct gathering {
     uint32_t pool;                      /* that technique 0 reads: the bin's, for STRATEGY_LIGHT_BINS */
     uint32_t windows[CUBE_FACES];
     uint32_t surface_seed;
+    /* Points that shine and whose pools are of bins read no pool: technique 0 then draws from the tiles as the point
+     * itself weighs them. */
+    bool has_tiles;
+    uint32_t tile_random;
+    point_tiles tiles;
 } gathering;
+
+/* Density, 1/sr, with which the light techniques draw a direction, each weighted with its expected count. */
+static inline float gathering_light_density(const gathering *g, const face_place *at)
+{
+    const float expected = g->expected_in_face[at->face];
+    if (!(expected > 0.0f))
+        return 0.0f;
+    if (!g->has_tiles)
+        return expected * pools_density(g->pools, g->pool, at);
+    const tiles *t = g->pools->bins->tiles;
+    const uint32_t position = tiles_position(t, at->face, at->row, at->column);
+    return expected * (point_tiles_probability(&g->tiles, position) * tiles_density(t, g->pools->tables, at));
+}
 
 /* Samples first ... first + count - 1, in the arrays of all pools, that a technique takes. */
 typedef struct pool_piece {
@@ -48,6 +67,7 @@ typedef struct sample_block {
     alignas(64) float green[BLOCK_STRIDE];
     alignas(64) float blue[BLOCK_STRIDE];
     alignas(64) float density[BLOCK_STRIDE]; /* sum_k m_k pdf_k over all techniques, 1/sr */
+    uint32_t listed[BLOCK_SAMPLES];          /* of samples of tiles: which of the lists' */
 } sample_block;
 
 /* Sum of a block. */

@@ -36,6 +36,9 @@ typedef struct kernel_set {
      * same bits with every instruction set. */
     uint32_t (*weigh_tiles)(const tiles *t, const normal_bin *bin, uint32_t *sums);
 
+    /* Weighs the tiles for one point. The same bits with every instruction set. */
+    void (*weigh_point)(const tiles *t, const tile_lobe *lobe, point_tiles *p);
+
     /* Draws samples first ... first + count - 1 of the pool of a face or the map that is not black. seed: of the pool.
      * The same bits with every instruction set. */
     void (*draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
@@ -63,6 +66,10 @@ typedef struct kernel_set {
      * surface technique, drawn now, with the light in their directions. The same bits with every instruction set. */
     void (*take_pools)(const gathering *g, const pool_piece *pieces, uint32_t piece_count, sample_block *block);
     void (*draw_surface)(const gathering *g, uint32_t first, uint32_t count, sample_block *block);
+
+    /* Likewise samples first ... first + count - 1 of those that a point draws from the tiles as it weighs them itself.
+     */
+    void (*take_tiles)(const gathering *g, uint32_t first, uint32_t count, sample_block *block);
 
     /* What the samples of a block contribute, and the sum. */
     void (*weigh)(const gathering *g, sample_block *block);
@@ -103,6 +110,7 @@ _Static_assert(HELIO_LANES <= POOL_PADDING && BLOCK_SAMPLES % HELIO_LANES == 0 &
 
 row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, uint32_t size, uint32_t *sums);
 uint32_t KERNEL(weigh_tiles)(const tiles *t, const normal_bin *bin, uint32_t *sums);
+void KERNEL(weigh_point)(const tiles *t, const tile_lobe *lobe, point_tiles *p);
 void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
 void KERNEL(draw_tile)(normal_bins *bins, const helio_tables *tables, uint32_t position, uint32_t seed);
 void KERNEL(draw_bin)(helio_pools *pools, uint32_t bin, uint32_t first, uint32_t count, uint32_t seed);
@@ -112,6 +120,7 @@ void KERNEL(sum_light)(const helio_pools *pools, uint32_t samples, const point_b
                        block_sum *sums);
 void KERNEL(take_pools)(const gathering *g, const pool_piece *pieces, uint32_t piece_count, sample_block *block);
 void KERNEL(draw_surface)(const gathering *g, uint32_t first, uint32_t count, sample_block *block);
+void KERNEL(take_tiles)(const gathering *g, uint32_t first, uint32_t count, sample_block *block);
 void KERNEL(weigh)(const gathering *g, sample_block *block);
 block_sum KERNEL(sum_block)(const sample_block *block);
 uint32_t KERNEL(fill_background)(const struct background *b, uint32_t count, const float *x, const float *y,

@@ -5,9 +5,9 @@
 #include "sampling/kernels.h"
 
 enum {
-    LIST_LEAST = 2,      /* samples of a tile that gives light */
-    LIST_FACTOR = 4,     /* samples of a tile for each that a pool takes */
-    LISTS_PER_POOL = 64, /* samples of all tiles together, at most, for each of a pool */
+    LIST_LEAST = 8,       /* samples of a tile that gives light: as many as a sharp lobe may want of it */
+    LIST_FACTOR = 4,      /* samples of a tile for each that a pool takes */
+    LISTS_PER_POOL = 128, /* samples of all tiles together, at most, for each of a pool */
     BINS_LOOKED_AT = 48,
     TILES_AT_ONCE = 16, /* the piece of work of a thread */
 };
@@ -49,8 +49,7 @@ static normal_bin make_bin(const normal_bins *b, uint32_t face, uint32_t row, ui
         least = fminf(least, dot(bin.centre,
                                  grid_point(b->per_edge, face, 2 * row + corner / 2 * 2, 2 * column + corner % 2 * 2)));
     float angle = acosf(least) + shake_angle(b->shake) + b->tiles->radius;
-    float sine = angle < (float)PI / 2 ? sinf(angle) : 2.0f; /* all of the sphere, and by far */
-    bin.reach = ceilf(sine * 256.0f + 1.0f) / 256.0f; /* a whole number, so that it is the same with every libm */
+    bin.reach = tiles_sine(angle);
     return bin;
 }
 

@@ -54,6 +54,12 @@ void normal_bins_update(normal_bins *b, const helio_tables *tables);
 /* Draws the lists of the tiles anew. */
 void normal_bins_draw_lists(normal_bins *b, const helio_tables *tables, uint32_t seed);
 
+/* How many samples all lists hold together. */
+static inline uint32_t normal_bins_listed(const normal_bins *b)
+{
+    return b->list_starts[b->tiles->count];
+}
+
 /* The weight of a tile's light at a cosine between its centre and that of a bin, see docs/method.md. */
 static inline float normal_bin_cosine(const normal_bin *bin, float cosine)
 {

@@ -4,6 +4,8 @@
 #include "core/error.h"
 #include "sampling/pools.h"
 
+#include <string.h>
+
 uint32_t helio_pools_count(const helio_pools *pools)
 {
     return pools->count;
@@ -17,6 +19,20 @@ uint32_t helio_pools_techniques(const helio_pools *pools)
 uint32_t helio_pools_length(const helio_pools *pools)
 {
     return pools->pool_length;
+}
+
+uint32_t helio_pools_listed(const helio_pools *pools)
+{
+    return pools->bins != NULL && pools->frame != 0 ? normal_bins_listed(pools->bins) : 0;
+}
+
+static helio_pool_sample read_listed(const normal_bins *bins, uint32_t index)
+{
+    const listed_sample *from = &bins->listed[index];
+    helio_pool_sample sample = {.density = from->density};
+    memcpy(sample.direction, from->direction, sizeof sample.direction);
+    memcpy(sample.radiance, from->radiance, sizeof sample.radiance);
+    return sample;
 }
 
 static helio_pool_sample read_sample(const helio_pools *pools, uint32_t pool, uint32_t index)
@@ -36,14 +52,15 @@ helio_status helio_pools_read(const helio_pools *pools, uint32_t pool, uint32_t 
 {
     if (pools == NULL || samples == NULL)
         return fail(HELIO_ERR_ARGUMENT, "helio_pools_read needs pools and a place for the samples");
-    if (pool >= pools->count)
+    const bool is_of_tiles = pool == HELIO_POOL_OF_TILES && pools->bins != NULL;
+    const uint32_t length = is_of_tiles ? helio_pools_listed(pools) : pools->pool_length;
+    if (pool >= pools->count && !is_of_tiles)
         return fail(HELIO_ERR_ARGUMENT, "there is no pool %u; there are %u, counted from 0", pool, pools->count);
-    if (first > pools->pool_length || count > pools->pool_length - first)
-        return fail(HELIO_ERR_ARGUMENT, "a pool has no %u samples from number %u on; it has %u", count, first,
-                    pools->pool_length);
     if (pools->frame == 0)
         return fail(HELIO_ERR_ARGUMENT, "the pools are empty; call helio_pools_draw");
+    if (first > length || count > length - first)
+        return fail(HELIO_ERR_ARGUMENT, "a pool has no %u samples from number %u on; it has %u", count, first, length);
     for (uint32_t i = 0; i < count; i++)
-        samples[i] = read_sample(pools, pool, first + i);
+        samples[i] = is_of_tiles ? read_listed(pools->bins, first + i) : read_sample(pools, pool, first + i);
     return HELIO_OK;
 }

@@ -6,6 +6,7 @@
 const kernel_set KERNEL(kernels) = {
     .sum_row = KERNEL(sum_row),
     .weigh_tiles = KERNEL(weigh_tiles),
+    .weigh_point = KERNEL(weigh_point),
     .draw_pool = KERNEL(draw_pool),
     .draw_tile = KERNEL(draw_tile),
     .draw_bin = KERNEL(draw_bin),
@@ -14,6 +15,7 @@ const kernel_set KERNEL(kernels) = {
     .sum_light = KERNEL(sum_light),
     .take_pools = KERNEL(take_pools),
     .draw_surface = KERNEL(draw_surface),
+    .take_tiles = KERNEL(take_tiles),
     .weigh = KERNEL(weigh),
     .sum_block = KERNEL(sum_block),
     .fill_background = KERNEL(fill_background),

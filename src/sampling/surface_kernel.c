@@ -66,11 +66,10 @@ static void look_up(const gathering *g, uint32_t count, const texel_list *texels
     for (uint32_t i = 0, k = block->count; i < count; i++, k++) {
         const face_place at = {texels->face[i], texels->row[i], texels->column[i], texels->u[i], texels->v[i]};
         const float *rgb = environment_texel(g->environment, at.face, at.row, at.column);
-        float expected = g->expected_in_face[at.face];
         to[SAMPLE_RED][k] = rgb[0];
         to[SAMPLE_GREEN][k] = rgb[1];
         to[SAMPLE_BLUE][k] = rgb[2];
-        to[SAMPLE_DENSITY][k] = expected > 0.0f ? expected * pools_density(g->pools, g->pool, &at) : 0.0f;
+        to[SAMPLE_DENSITY][k] = gathering_light_density(g, &at);
     }
 }
 

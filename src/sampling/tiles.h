@@ -12,7 +12,12 @@
 
 #include <stdalign.h>
 
-enum { TILES_PER_EDGE = 16, TILES_MOST = CUBE_FACES * TILES_PER_EDGE * TILES_PER_EDGE };
+enum {
+    TILES_PER_EDGE = 16,
+    TILES_MOST = CUBE_FACES * TILES_PER_EDGE * TILES_PER_EDGE,
+    TILE_GROUP = 16, /* tiles that follow each other in the order, and so are neighbours: 4 x 4 where T is 16 */
+    TILE_GROUPS = TILES_MOST / TILE_GROUP,
+};
 
 typedef struct tiles {
     helio_context *context;
@@ -21,6 +26,7 @@ typedef struct tiles {
     uint32_t count;                      /* 6 T^2 */
     uint32_t stride;                     /* 1 + most rows of a tile */
     float radius;                        /* largest angle between the centre of a tile and a direction in it */
+    float edge;                          /* its sine, rounded up */
     uint32_t starts[TILES_PER_EDGE + 1]; /* first row, or column, of the tiles of an edge; R at the end */
     uint8_t *of_line;                    /* [R]: which of the T tiles holds a row, or column */
     uint16_t positions[TILES_MOST];      /* [6][T][T]: in the order */
@@ -28,9 +34,16 @@ typedef struct tiles {
     alignas(64) float x[TILES_MOST];     /* [count]: direction to the centre of the tile at a position */
     alignas(64) float y[TILES_MOST];
     alignas(64) float z[TILES_MOST];
-    alignas(64) float light[TILES_MOST]; /* [count]: the tables' weight, in proportion; 2^-60 to 1, or 0 */
-    row_sum totals[TILES_MOST];          /* [count]: the same exactly */
-    uint32_t *sums;                      /* [count][stride]: prefix sums over the rows of a tile */
+    alignas(64) float light[TILES_MOST];    /* [count]: the tables' weight, in proportion; 2^-60 to 1, or 0 */
+    row_sum totals[TILES_MOST];             /* [count]: the same exactly */
+    uint32_t group_count;                   /* count / TILE_GROUP, rounded up; tiles past count are black */
+    alignas(64) float group_x[TILE_GROUPS]; /* [group_count]: direction to the middle of a group */
+    alignas(64) float group_y[TILE_GROUPS];
+    alignas(64) float group_z[TILE_GROUPS];
+    alignas(64) float group_edge[TILE_GROUPS]; /* [group_count]: of a group whose cosine to a normal is at most the
+                                                  negative of this, no tile reaches above the horizon */
+    bool group_is_lit[TILE_GROUPS];            /* [group_count] */
+    uint32_t *sums;                            /* [count][stride]: prefix sums over the rows of a tile */
     float *segment_densities; /* [6][R][T]: what a unit of weight in this row of a tile adds to the density given the
                                  tile, as row_densities of the tables do */
 } tiles;
@@ -40,6 +53,10 @@ void tiles_destroy(tiles *t);
 
 /* Sums up the tables' current weights. No memory is taken. */
 void tiles_update(tiles *t, const helio_tables *tables);
+
+/* The sine of an angle below 90 degrees, rounded up to a 256th, so that it is the same with every libm; 2 for larger
+ * angles. */
+float tiles_sine(float angle);
 
 /* Where the tile that holds a texel comes in the order. */
 static inline uint32_t tiles_position(const tiles *t, uint32_t face, uint32_t row, uint32_t column)

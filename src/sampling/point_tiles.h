@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT
+ * point_tiles.h - the tiles of the map as one shiny point weighs them: light x BRDF x cosine, each at the centre of a
+ * tile. Where bins of normals know the light and the normal, this knows the lobe as well, for the price of a few
+ * operations for each tile above the point's horizon.
+ *
+ * Weights become integers, as those of bins do, so that the probability that is reported is the one that is drawn. */
+#ifndef HELIOSTAT_SRC_POINT_TILES_H
+#define HELIOSTAT_SRC_POINT_TILES_H
+
+#include "sampling/brdf.h"
+#include "sampling/tiles.h"
+
+/* What tiles are weighed with: a BRDF in a form that is cheap and smooth, with its lobe no narrower than tiles are, as
+ * it stands for all of a tile. docs/method.md has the formulas. */
+typedef struct tile_lobe {
+    helio_material_kind kind; /* PHONG or GGX */
+    vec3 normal;
+    vec3 axis;        /* PHONG: of the mirror direction. GGX: of the view */
+    float edge;       /* sine of the radius of a tile: those down to -edge below the horizon reach above it */
+    float diffuse;    /* luminance of the diffuse lobe, 1/sr */
+    float specular;   /* ... and of the specular one, as far as BRDF samples do not look after it */
+    float sharpness;  /* PHONG: the lobe is 2^(-sharpness (1 - cosine)) */
+    float narrowness; /* GGX: 1 - alpha^2 */
+    float alpha;      /* GGX, as it is: for the masking */
+    float view_cosine;
+} tile_lobe;
+
+typedef struct point_tiles {
+    uint32_t total; /* of all weights; 0 if no light is above the horizon */
+    float share;    /* 1 / total, or 0 */
+    uint32_t group_count;
+    uint8_t groups[TILE_GROUPS];              /* [group_count]: those that reach above the horizon and give light */
+    uint8_t places[TILE_GROUPS];              /* [groups of the tiles]: where in these arrays, or TILE_GROUPS */
+    uint32_t sums[TILE_GROUPS + 1];           /* [group_count + 1]: prefix sums over groups */
+    alignas(64) uint32_t weights[TILES_MOST]; /* [group_count][TILE_GROUP] */
+} point_tiles;
+
+/* Part of a point's samples that are best drawn from the specular lobe, at an even split: nearly all for a mirror,
+ * whose lobe is lost in a tile, few where the lobe is wider than tiles are, and in proportion to what it reflects of
+ * the light, b->specular_share. */
+float tile_lobe_need(const tiles *t, const brdf *b);
+
+/* b: with brdf_prepare_share() done for the material's own share. */
+void tile_lobe_prepare(tile_lobe *lobe, const tiles *t, const brdf *b);
+
+/* Probability of a tile. Drawing and MIS both use this. */
+static inline float point_tiles_probability(const point_tiles *p, uint32_t position)
+{
+    const uint32_t place = p->places[position / TILE_GROUP];
+    return place < TILE_GROUPS ? (float)p->weights[place * TILE_GROUP + position % TILE_GROUP] * p->share : 0.0f;
+}
+
+#endif

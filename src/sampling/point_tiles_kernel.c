@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A shiny point's own density over the tiles, and samples from it. */
+#include "core/random.h"
+#include "sampling/fixed_point.h"
+#include "sampling/kernels.h"
+
+/* ---- weights ---- */
+
+/* Groups of tiles that are not wholly below the horizon, nor black. */
+static void choose_groups(const tiles *t, vec3 normal, point_tiles *p)
+{
+    int32_t is_above[TILE_GROUPS];
+#pragma omp simd
+    for (uint32_t i = 0; i < t->group_count; i++) {
+        float cosine = normal.x * t->group_x[i] + normal.y * t->group_y[i] + normal.z * t->group_z[i];
+        is_above[i] = cosine > -t->group_edge[i];
+    }
+    p->group_count = 0;
+    for (uint32_t i = 0; i < t->group_count; i++) {
+        const bool is_taken = is_above[i] && t->group_is_lit[i];
+        p->groups[p->group_count] = (uint8_t)i; /* overwritten by the next where it is not taken */
+        p->places[i] = (uint8_t)(is_taken ? p->group_count : TILE_GROUPS);
+        p->group_count += is_taken;
+    }
+}
+
+/* The cosine between normal and a tile, but falling to 0 where the tile's last corner sinks below the horizon. */
+static inline float soft_cosine(float cosine, float edge)
+{
+    float risen = cosine + edge;
+    risen = risen > 0.0f ? risen : 0.0f;
+    return cosine < edge ? risen * risen / (4.0f * edge) : cosine;
+}
+
+/* BRDF x cosine for a direction. */
+static inline __attribute__((always_inline)) float lobe_value(helio_material_kind kind, const tile_lobe *lobe,
+                                                              vec3 direction)
+{
+    const float cosine = dot(lobe->normal, direction), soft = soft_cosine(cosine, lobe->edge);
+    const float along = dot(lobe->axis, direction);
+    if (kind == HELIO_MATERIAL_PHONG)
+        return soft * (lobe->diffuse + lobe->specular * exp2_fast(lobe->sharpness * (along - 1.0f)));
+    /* D by (n.h)^2 = (n.v + n.l)^2 / (2 + 2 v.l), without the square root of h; times Smith's masking of the light,
+     * nearly cosine / (cosine (2 - alpha) + alpha). */
+    const float sum = lobe->view_cosine + cosine, twice = 2.0f + 2.0f * along;
+    const float falling = twice - lobe->narrowness * (sum * sum);
+    const float masking = soft * (2.0f - lobe->alpha) + lobe->alpha;
+    const float safe = falling > 1e-6f ? falling : 1e-6f;
+    return soft * (lobe->diffuse + lobe->specular * (twice * twice) / (safe * safe * masking));
+}
+
+/* The weights of the chosen groups' tiles, and the largest of them. */
+static inline __attribute__((always_inline)) float weigh_groups(helio_material_kind kind, const tiles *t,
+                                                                const tile_lobe *given, const point_tiles *p,
+                                                                float *restrict weights)
+{
+    const tile_lobe lobe = *given;
+    int32_t largest_bits = 0;
+    for (uint32_t k = 0; k < p->group_count; k++) {
+        const uint32_t first = (uint32_t)p->groups[k] * TILE_GROUP;
+        const float *x = t->x + first, *y = t->y + first, *z = t->z + first, *light = t->light + first;
+        float *to = weights + (size_t)k * TILE_GROUP;
+#pragma omp simd reduction(max : largest_bits)
+        for (uint32_t i = 0; i < TILE_GROUP; i++) {
+            to[i] = light[i] * lobe_value(kind, &lobe, (vec3){x[i], y[i], z[i]});
+            int32_t bits = bits_of_float(to[i]);
+            largest_bits = bits > largest_bits ? bits : largest_bits;
+        }
+    }
+    return float_of_bits(largest_bits);
+}
+
+void KERNEL(weigh_point)(const tiles *t, const tile_lobe *lobe, point_tiles *p)
+{
+    alignas(64) float weights[TILES_MOST];
+    choose_groups(t, lobe->normal, p);
+    float largest = lobe->kind == HELIO_MATERIAL_PHONG ? weigh_groups(HELIO_MATERIAL_PHONG, t, lobe, p, weights)
+                                                       : weigh_groups(HELIO_MATERIAL_GGX, t, lobe, p, weights);
+    int exponent = fixed_point_exponent(largest, tables_summand_bits(t->count));
+    fixed_point_quantise(weights, p->group_count * TILE_GROUP, ldexpf(1.0f, exponent), p->weights);
+    uint32_t sum = 0;
+    for (uint32_t k = 0; k < p->group_count; k++) {
+        p->sums[k] = sum;
+        sum = fixed_point_total(p->weights + (size_t)k * TILE_GROUP, TILE_GROUP, sum);
+    }
+    p->sums[p->group_count] = p->total = sum;
+    p->share = sum != 0 ? 1.0f / (float)sum : 0.0f;
+}
+
+/* ---- samples ---- */
+
+/* Samples on their way: the tile that each falls into, and which of its listed samples it is. */
+typedef struct tile_draws {
+    uint32_t elements[BLOCK_SAMPLES];
+    float probabilities[BLOCK_SAMPLES];
+} tile_draws;
+
+static inline uint64_t part_of(uint64_t x, uint32_t fraction)
+{
+    return (x >> 32) * fraction + (((x & UINT32_MAX) * fraction) >> 32);
+}
+
+/* Places at equal steps through the sums, from a random start; what is left of a place in its tile counts through the
+ * tile's list. In 2^-20 of a unit of weight, for the steps: sums are below 2^31. */
+static void choose_tiles(const normal_bins *bins, const point_tiles *p, uint32_t samples, uint32_t first,
+                         uint32_t count, uint32_t random, tile_draws *draws)
+{
+    const uint64_t step = ((uint64_t)p->total << 20) / samples;
+    uint64_t place = first * step + part_of(step, random);
+    uint32_t k = 0, i = 0, sum = 0;
+    for (uint32_t n = 0; n < count; n++, place += step) {
+        const uint32_t whole = (uint32_t)(place >> 20);
+        if (p->sums[k + 1] <= whole) {
+            do
+                k++;
+            while (p->sums[k + 1] <= whole);
+            i = 0;
+            sum = p->sums[k];
+        }
+        const uint32_t *weights = p->weights + (size_t)k * TILE_GROUP;
+        while (sum + weights[i] <= whole)
+            sum += weights[i++];
+        const uint32_t position = p->groups[k] * (uint32_t)TILE_GROUP + i, start = bins->list_starts[position];
+        const uint32_t length = bins->list_starts[position + 1] - start;
+        const uint64_t rest = place - ((uint64_t)sum << 20);
+        uint32_t element = (uint32_t)((double)rest * (double)length / ((double)weights[i] * 0x1p20));
+        draws->elements[n] = start + (element < length ? element : length - 1);
+        draws->probabilities[n] = (float)weights[i] * p->share;
+        __builtin_prefetch(&bins->listed[draws->elements[n]]);
+    }
+}
+
+void KERNEL(take_tiles)(const gathering *g, uint32_t first, uint32_t count, sample_block *block)
+{
+    const normal_bins *bins = g->pools->bins;
+    const float expected = g->counts.expected[0];
+    tile_draws draws;
+    choose_tiles(bins, &g->tiles, g->counts.realised[0], first, count, g->tile_random, &draws);
+    for (uint32_t i = 0, k = block->count; i < count; i++, k++) {
+        const listed_sample *sample = &bins->listed[draws.elements[i]];
+        block->samples[SAMPLE_X][k] = sample->direction[0];
+        block->samples[SAMPLE_Y][k] = sample->direction[1];
+        block->samples[SAMPLE_Z][k] = sample->direction[2];
+        block->samples[SAMPLE_RED][k] = sample->radiance[0];
+        block->samples[SAMPLE_GREEN][k] = sample->radiance[1];
+        block->samples[SAMPLE_BLUE][k] = sample->radiance[2];
+        block->listed[k] = draws.elements[i];
+        block->samples[SAMPLE_DENSITY][k] = draws.probabilities[i] * sample->density * expected;
+    }
+    block->count += count;
+}
