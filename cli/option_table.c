@@ -317,7 +317,9 @@ const cli_option option_table[] = {
      .argument = "W",
      .initial = "solid-angle",
      .choices = "solid-angle paper",
-     .help = "weight of a texel: luminance times its solid angle, or luminance alone",
+     .help =
+         "weight of a texel: luminance times its solid angle, or luminance alone, or times its solid angle what it has "
+         "above the mean of the map (MIS compensation; for light+brdf and face+brdf)",
      .kind = OPTION_CHOICE,
      MEMBER(weighting),
      STUDIED(GROUP_SAMPLING)},

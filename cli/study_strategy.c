@@ -34,7 +34,7 @@ static int take_option(const char *word, study_strategy *strategy)
         return EXIT_CODE_OK;
     }
     return message_usage(
-        "--strategies: after %s: come no-beta, brdf-share=0.001..0.999, weighting=solid-angle or paper, "
+        "--strategies: after %s: come no-beta, brdf-share=0.001..0.999, weighting=solid-angle, paper or compensated, "
         "decorrelate=hash or none, not '%s'",
         helio_strategy_name(strategy->strategy), word);
 }

@@ -324,7 +324,7 @@ static void test_options_without_effect_are_told(void **state)
     } table[] = {
         {SMALL "--out idle.png --no-beta --strategy light", "--no-beta"},
         {SMALL "--out idle.png --brdf-share 0.2 --strategy face", "--brdf-share"},
-        {SMALL "--out idle.png --bins 4", "--bins"},
+        {SMALL "--out idle.png --bins 4 --strategy face", "--bins"},
         {SMALL "--out idle.png --layout latlong", "--layout"},
         {SMALL "--out idle.exr --exposure 2", "--exposure"},
         {SMALL "--out idle.pfm --ground shadow", "alpha"},
@@ -334,7 +334,8 @@ static void test_options_without_effect_are_told(void **state)
         assert_non_null(strstr(program_err, "warning"));
         assert_non_null(strstr(program_err, table[i].word));
     }
-    assert_int_equal(run_program(SMALL "--out idle.png --no-beta --brdf-share 0.2 --exposure 1"), 0);
+    assert_int_equal(run_program(SMALL "--out idle.png --strategy face+brdf --no-beta --brdf-share 0.2 --exposure 1"),
+                     0);
     assert_string_equal(program_err, "");
 }
 

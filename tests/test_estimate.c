@@ -350,6 +350,63 @@ static void unbiased_light_brdf(void **state)
     check_unbiased(HELIO_STRATEGY_LIGHT_BRDF, HELIO_WEIGHTING_PAPER, NULL);
 }
 
+static void unbiased_light_brdf_compensated(void **state)
+{
+    (void)state;
+    check_unbiased(HELIO_STRATEGY_LIGHT_BRDF, HELIO_WEIGHTING_COMPENSATED, NULL);
+}
+
+static void unbiased_face_brdf_compensated(void **state)
+{
+    (void)state;
+    check_unbiased(HELIO_STRATEGY_FACE_BRDF, HELIO_WEIGHTING_COMPENSATED, NULL);
+}
+
+/* Where nothing is above the mean, the BRDF gets all samples. */
+static void compensation_of_even_light_is_brdf_sampling(void **state)
+{
+    (void)state;
+    test_map map = {.name = "constant", .size = 8};
+    fill_random(&map, 1, 0.7f, 0.7f);
+    helio_context *context = make_context(1, NULL);
+    world w = make_world(context, &map, HELIO_WEIGHTING_COMPENSATED, HELIO_STRATEGY_FACE_BRDF, POOL_LENGTH);
+    world plain = make_world(context, &map, HELIO_WEIGHTING_SOLID_ANGLE, HELIO_STRATEGY_BRDF, POOL_LENGTH);
+    helio_shading_point points[POINTS];
+    make_points(points);
+    for (int i = 0; i < POINTS; i++) {
+        float a[3], b[3];
+        assert_ok(helio_estimate(w.pools, &points[i], NULL, a, NULL));
+        assert_ok(helio_estimate(plain.pools, &points[i], NULL, b, NULL));
+        assert_memory_equal(a, b, sizeof a);
+        assert_true(a[0] > 0);
+    }
+    destroy_world(&plain);
+    destroy_world(&w);
+    helio_context_destroy(context);
+}
+
+/* Tables that leave light out serve none that has no BRDF samples everywhere. */
+static void compensation_is_for_strategies_with_brdf_samples(void **state)
+{
+    (void)state;
+    test_map map = {.name = "noise", .size = 8};
+    fill_random(&map, 1, 0.1f, 0.7f);
+    helio_context *context = make_context(1, NULL);
+    world w = make_world(context, &map, HELIO_WEIGHTING_COMPENSATED, HELIO_STRATEGY_FACE_BRDF, POOL_LENGTH);
+    for (helio_strategy strategy = HELIO_STRATEGY_AUTO; strategy <= HELIO_STRATEGY_PRODUCT_BRDF; strategy++) {
+        const bool is_served = strategy == HELIO_STRATEGY_COSINE || strategy == HELIO_STRATEGY_BRDF ||
+                               strategy == HELIO_STRATEGY_LIGHT_BRDF || strategy == HELIO_STRATEGY_FACE_BRDF;
+        helio_pools *pools;
+        helio_status status = helio_pools_create(w.tables, &(helio_pools_desc){.strategy = strategy}, &pools);
+        assert_int_equal(status, is_served ? HELIO_OK : HELIO_ERR_ARGUMENT);
+        if (!is_served)
+            assert_non_null(strstr(helio_last_error(), "take light+brdf or face+brdf"));
+        helio_pools_destroy(pools);
+    }
+    destroy_world(&w);
+    helio_context_destroy(context);
+}
+
 static void unbiased_face(void **state)
 {
     (void)state;
@@ -925,6 +982,10 @@ int main(void)
         cmocka_unit_test(unbiased_brdf),
         cmocka_unit_test(unbiased_light),
         cmocka_unit_test(unbiased_light_brdf),
+        cmocka_unit_test(unbiased_light_brdf_compensated),
+        cmocka_unit_test(unbiased_face_brdf_compensated),
+        cmocka_unit_test(compensation_of_even_light_is_brdf_sampling),
+        cmocka_unit_test(compensation_is_for_strategies_with_brdf_samples),
         cmocka_unit_test(unbiased_face),
         cmocka_unit_test(unbiased_face_paper_weighting_without_beta),
         cmocka_unit_test(unbiased_face_brdf),

@@ -218,9 +218,9 @@ static void the_steps_of_a_pixel_average_to_the_picture(void **state)
 {
     (void)state;
     static const helio_renderer_desc descs[] = {
-        {.spp = 20, .pool_length = 64},          /* three parts, with pools of their own */
-        {.spp = 8, .aa = 3},                     /* three camera samples that share pools */
-        {.spp = 11, .aa = 2, .pool_length = 64}, /* both */
+        {.strategy = HELIO_STRATEGY_FACE_BRDF, .spp = 20, .pool_length = 64}, /* three parts, with pools of their own */
+        {.spp = 8, .aa = 3}, /* three camera samples that share pools */
+        {.strategy = HELIO_STRATEGY_FACE_BRDF, .spp = 11, .aa = 2, .pool_length = 64}, /* both */
         {.spp = 9, .strategy = HELIO_STRATEGY_BRDF, .aa = 2, .pool_length = 64},
     };
     static const uint32_t steps[] = {3, 3, 4, 4};

@@ -494,12 +494,13 @@ static void lengths_are_powers_of_two_and_a_point_takes_an_eighth(void **state)
     (void)state;
     float map[FLOATS];
     fill_noise(map, 8);
-    fixture f = make_fixture(map, HELIO_STRATEGY_AUTO, 0);
+    fixture f = make_fixture(map, HELIO_STRATEGY_FACE_BRDF, 0);
     assert_int_equal(helio_pools_sample_limit(f.pools), 128);
     static const uint32_t good[] = {64, 128, 1024, 65536}, bad[] = {1, 8, 32, 63, 65, 100, 65535, 131072, UINT32_MAX};
     helio_pools *pools;
     for (int i = 0; i < 4; i++) {
-        assert_ok(helio_pools_create(f.tables, &(helio_pools_desc){.length = good[i]}, &pools));
+        assert_ok(helio_pools_create(f.tables, &(helio_pools_desc){.strategy = HELIO_STRATEGY_FACE, .length = good[i]},
+                                     &pools));
         assert_int_equal(helio_pools_sample_limit(pools), good[i] / 8);
         helio_pools_destroy(pools);
     }
@@ -512,7 +513,7 @@ static void lengths_are_powers_of_two_and_a_point_takes_an_eighth(void **state)
         assert_non_null(strstr(helio_last_error(), number));
     }
     assert_ok(helio_pools_create(f.tables, NULL, &pools));
-    assert_int_equal(pools->strategy, HELIO_STRATEGY_FACE_BRDF);
+    assert_int_equal(pools->strategy, HELIO_STRATEGY_PRODUCT_BRDF);
     helio_pools_destroy(pools);
     assert_ok(helio_pools_create(f.tables, &(helio_pools_desc){.strategy = HELIO_STRATEGY_PRODUCT}, &pools));
     assert_int_equal(helio_pools_sample_limit(pools), 64);
@@ -579,7 +580,7 @@ static void strategies_have_names(void **state)
         assert_string_equal(helio_strategy_name((helio_strategy)i), names[i]);
         assert_ok(helio_strategy_parse(names[i], &strategy));
         assert_int_equal(strategy, i);
-        assert_int_equal(helio_strategy_resolve(strategy), i == 0 ? HELIO_STRATEGY_FACE_BRDF : i);
+        assert_int_equal(helio_strategy_resolve(strategy), i == 0 ? HELIO_STRATEGY_PRODUCT_BRDF : i);
     }
     static const char *const wrong[] = {"", "Face", "face+", "brdf+face", "products", NULL};
     for (int i = 0; i < 6; i++) {

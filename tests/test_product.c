@@ -413,6 +413,157 @@ static void bins_follow_the_frame(void **state)
     free(other);
 }
 
+/* ---- points that weigh tiles themselves ---- */
+
+static const helio_material shiny[] = {
+    {.kind = HELIO_MATERIAL_PHONG, .diffuse = {0.5f, 0.4f, 0.3f}, .specular = {0.5f, 0.4f, 0.2f}, .exponent = 120},
+    {.kind = HELIO_MATERIAL_PHONG, .specular = {0.5f, 0.4f, 0.2f}, .exponent = 3},
+    {.kind = HELIO_MATERIAL_GGX, .diffuse = {1, 0.8f, 0.3f}, .metallic = 1, .roughness = 0.3f},
+    {.kind = HELIO_MATERIAL_GGX, .diffuse = {0.5f, 0.8f, 0.3f}, .roughness = 0.02f},
+    {.kind = HELIO_MATERIAL_GGX, .diffuse = {0.5f, 0.8f, 0.3f}, .roughness = 1.0f},
+};
+enum { SHINY = sizeof shiny / sizeof shiny[0], TRIED = 24 };
+
+static vec3 some_direction(uint64_t *seed)
+{
+    vec3 v = {0, 0, 0};
+    while (!(dot(v, v) > 0.01f && dot(v, v) < 1.0f))
+        v = (vec3){2 * (float)random_unit(seed) - 1, 2 * (float)random_unit(seed) - 1,
+                   2 * (float)random_unit(seed) - 1};
+    return normalize(v);
+}
+
+/* A surface seen from above, or just so. */
+static brdf some_surface(const helio_material *material, uint64_t *seed)
+{
+    vec3 normal = some_direction(seed), view = some_direction(seed);
+    return brdf_prepare(material, normal, brdf_lift_view(normal, view));
+}
+
+static uint32_t weight_at(const point_tiles *p, uint32_t position)
+{
+    uint32_t place = p->places[position / TILE_GROUP];
+    return place < TILE_GROUPS ? p->weights[place * TILE_GROUP + position % TILE_GROUP] : 0;
+}
+
+/* Weights sum to what they are said to sum to; every tile that holds light above the horizon has one; the probabilities
+ * are their shares; and all instruction sets find the same. */
+static void points_weigh_every_tile_that_can_light_them(void **state)
+{
+    (void)state;
+    static point_tiles p, other;
+    for (int s = 0; s < SIZES; s++) {
+        float *map = make_sky(sizes[s], 9);
+        world w = make_world(map, sizes[s], 2, 64, HELIO_WEIGHTING_SOLID_ANGLE);
+        const tiles *t = w.pools->bins->tiles;
+        uint64_t seed = 12;
+        for (int m = 0; m < SHINY * TRIED; m++) {
+            brdf surface = some_surface(&shiny[m % SHINY], &seed);
+            tile_lobe lobe;
+            tile_lobe_prepare(&lobe, t, &surface);
+            kernels_of(ISA_SCALAR)->weigh_point(t, &lobe, &p);
+            uint64_t sum = 0;
+            double probability = 0;
+            for (uint32_t i = 0; i < t->count; i++) {
+                sum += weight_at(&p, i);
+                probability += (double)point_tiles_probability(&p, i);
+                assert_true(t->light[i] > 0 || weight_at(&p, i) == 0);
+            }
+            assert_true(sum == p.total && sum < (uint64_t)1 << 31);
+            assert_true(sum == 0 || fabs(probability - 1) < 1e-5);
+            for (int k = 0; k < 400; k++) {
+                vec3 direction = some_direction(&seed);
+                cube_position at = cube_project(direction);
+                uint32_t row = cube_texel(at.v, t->size), column = cube_texel(at.u, t->size);
+                uint32_t position = tiles_position(t, at.face, row, column);
+                if (dot(surface.normal, direction) > 0 && t->light[position] > 0 && lobe.diffuse > 0)
+                    assert_true(weight_at(&p, position) > 0);
+            }
+            for (uint32_t i = 1; helio_isa_name(i) != NULL; i++) {
+                isa set;
+                assert_ok(isa_choose(helio_isa_name(i), &set));
+                kernels_of(set)->weigh_point(t, &lobe, &other);
+                assert_int_equal(p.total, other.total);
+                assert_int_equal(p.group_count, other.group_count);
+                assert_memory_equal(p.weights, other.weights, p.group_count * TILE_GROUP * sizeof *p.weights);
+            }
+        }
+        destroy_world(&w);
+        free(map);
+    }
+}
+
+/* ---- the strategy that chooses itself ---- */
+
+static helio_pools *make_pools(const world *w, helio_strategy strategy)
+{
+    helio_pools *pools;
+    assert_ok(helio_pools_create(w->tables, &(helio_pools_desc){.strategy = strategy}, &pools));
+    assert_ok(helio_pools_draw(pools, 3, 1));
+    return pools;
+}
+
+static bool estimates_agree(const helio_pools *a, const helio_pools *b)
+{
+    uint64_t seed = 31;
+    bool agree = true;
+    for (uint32_t i = 0; i < 3 * TRIED; i++) {
+        helio_shading_point point = {.material = {.kind = HELIO_MATERIAL_DIFFUSE, .diffuse = {0.8f, 0.8f, 0.8f}},
+                                     .seed = i};
+        if (i % 3 > 0)
+            point.material = shiny[i % 3];
+        vec3 normal = some_direction(&seed);
+        vec3_to(normal, point.normal);
+        vec3_to(brdf_lift_view(normal, some_direction(&seed)), point.view);
+        float x[3], y[3];
+        assert_ok(helio_estimate(a, &point, NULL, x, NULL));
+        assert_ok(helio_estimate(b, &point, NULL, y, NULL));
+        agree &= memcmp(x, y, sizeof x) == 0;
+    }
+    return agree;
+}
+
+/* Constant, a gradient, two halves, a little noise; then much noise, a lamp, a dark face with a small light. */
+static float light_of(int kind, vec3 direction, size_t texel, uint64_t *seed)
+{
+    switch (kind) {
+    case 0: return 1.0f;
+    case 1: return 1.0f + 0.9f * direction.y;
+    case 2: return direction.y > 0 ? 1.0f : 0.5f;
+    case 3: return 1.0f + 0.1f * (float)random_unit(seed);
+    case 4: return (float)random_unit(seed);
+    case 5: return texel == 777 ? 100.0f : 1.0f;
+    default: return direction.y < -0.9f ? (texel % 97 == 0 ? 0.1f : 1e-3f) : 1.0f;
+    }
+}
+
+static void auto_aims_only_where_that_pays(void **state)
+{
+    (void)state;
+    enum { SIZE = 64, KINDS = 7, EVEN = 4 };
+    for (int kind = 0; kind < KINDS; kind++) {
+        float *map = make_map(SIZE);
+        uint64_t seed = 5;
+        for (size_t i = 0; i < 6 * SIZE * SIZE; i++) {
+            float u = ((float)(i % SIZE) + 0.5f) * 2 / SIZE - 1, v = ((float)(i / SIZE % SIZE) + 0.5f) * 2 / SIZE - 1;
+            float light = light_of(kind, cube_direction((uint32_t)(i / SIZE / SIZE), u, v), i, &seed);
+            for (int c = 0; c < 3; c++)
+                map[3 * i + (size_t)c] = light;
+        }
+        world w = make_world(map, SIZE, 8, 256, HELIO_WEIGHTING_SOLID_ANGLE);
+        helio_pools *chosen = make_pools(&w, HELIO_STRATEGY_AUTO);
+        helio_pools *brdfs = make_pools(&w, HELIO_STRATEGY_BRDF);
+        helio_pools *product = make_pools(&w, HELIO_STRATEGY_PRODUCT_BRDF);
+        assert_int_equal(estimates_agree(chosen, brdfs), kind < EVEN);
+        assert_int_equal(estimates_agree(chosen, product), kind >= EVEN);
+        helio_pools_destroy(product);
+        helio_pools_destroy(brdfs);
+        helio_pools_destroy(chosen);
+        destroy_world(&w);
+        free(map);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -426,6 +577,8 @@ int main(void)
         cmocka_unit_test(bins_are_cells_around_their_centres),
         cmocka_unit_test(black_maps_have_no_density_and_one_texel_has_it_all),
         cmocka_unit_test(bins_follow_the_frame),
+        cmocka_unit_test(points_weigh_every_tile_that_can_light_them),
+        cmocka_unit_test(auto_aims_only_where_that_pays),
     };
     return cmocka_run_group_tests_name("product", tests, NULL, NULL);
 }

@@ -243,8 +243,9 @@ static void samples_beyond_the_pools_take_more_passes_and_converge(void **state)
     static float pictures[2][3][PIXELS * 4];
     for (int run = 0; run < 2; run++)
         for (int i = 0; i < 3; i++) {
-            setup s = make_setup(context, make_sphere, &glossy, HELIO_GROUND_PLANE, map,
-                                 (helio_renderer_desc){.spp = spps[i], .pool_length = 64});
+            setup s = make_setup(
+                context, make_sphere, &glossy, HELIO_GROUND_PLANE, map,
+                (helio_renderer_desc){.strategy = HELIO_STRATEGY_FACE_BRDF, .spp = spps[i], .pool_length = 64});
             helio_frame_info info;
             assert_int_equal(helio_renderer_passes(s.renderer), spps[i] / 8);
             memcpy(pictures[run][i], render(&s, 100 + (uint32_t)run, &info).rgba, sizeof pictures[run][i]);
@@ -271,8 +272,10 @@ static void camera_samples_smooth_edges_and_share_passes(void **state)
     helio_context *context = make_context(2, NULL);
     float map[MAP_HEIGHT][MAP_WIDTH][3];
     fill_sunny(map);
-    setup s = make_setup(context, make_sphere, &white, HELIO_GROUND_NONE, map,
-                         (helio_renderer_desc){.spp = 16, .aa = 20, .background = HELIO_BACKGROUND_NONE});
+    setup s =
+        make_setup(context, make_sphere, &white, HELIO_GROUND_NONE, map,
+                   (helio_renderer_desc){
+                       .strategy = HELIO_STRATEGY_FACE_BRDF, .spp = 16, .aa = 20, .background = HELIO_BACKGROUND_NONE});
     helio_frame_info info;
     helio_picture picture = render(&s, 0, &info);
     assert_int_equal(info.passes, 3); /* 8 camera samples of 16 fit in one eighth of 1024 */

@@ -787,7 +787,7 @@ static void test_full_disk_leaves_no_half_video(void **state)
     skip_without_video("a.mkv");
     write_long_sequence();
     write_text("a.mkv", "old");
-    program_limits.file_size = 20000;
+    program_limits.file_size = 6000;
     fails(SMALL "--env in_%04d.pfm --codec ffv1 --out a.mkv", 1,
           "a.mkv cannot be written: File too large; nothing is kept");
     assert_null(strstr(program_err, "written to"));

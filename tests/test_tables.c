@@ -26,7 +26,8 @@ typedef enum map_kind {
     MAP_ONE_TEXEL, /* one lit texel in all */
     MAP_RANGE,     /* from denormal numbers to 1e30 */
     MAP_BLACK,
-    MAPS
+    MAPS,
+    MAP_GREY = MAPS, /* the same everywhere */
 } map_kind;
 
 static void fill_texel(map_kind kind, size_t face, size_t row, size_t column, size_t size, uint64_t *state,
@@ -46,6 +47,8 @@ static void fill_texel(map_kind kind, size_t face, size_t row, size_t column, si
     case MAP_BLACK: value = 0; break;
     default: break;
     }
+    if (kind == MAP_GREY)
+        value = 1, colour = 0.5;
     rgb[0] = (float)(value * colour);
     rgb[1] = (float)value;
     rgb[2] = (float)(value * (1 - colour));
@@ -740,7 +743,7 @@ static void mistakes_are_refused_with_a_sentence(void **state)
     assert_ok(helio_environment_create(context, &desc, &environment));
     assert_refused(helio_tables_create(NULL, HELIO_WEIGHTING_PAPER, &tables));
     assert_refused(helio_tables_create(environment, HELIO_WEIGHTING_PAPER, NULL));
-    assert_refused(helio_tables_create(environment, (helio_weighting)2, &tables));
+    assert_refused(helio_tables_create(environment, (helio_weighting)3, &tables));
     assert_null(tables);
     assert_refused(helio_tables_update(NULL));
     assert_ok(helio_tables_create(environment, HELIO_WEIGHTING_PAPER, &tables));
@@ -754,15 +757,76 @@ static void mistakes_are_refused_with_a_sentence(void **state)
     helio_context_destroy(context);
 }
 
+/* ---- MIS compensation ---------------------------------------------------------------------- */
+
+static double mean_luminance(const fixture *f)
+{
+    double flux[6], sum = 0;
+    helio_tables_flux(f->tables, flux);
+    for (int face = 0; face < 6; face++)
+        sum += flux[face];
+    return sum / (4 * PI);
+}
+
+/* Each texel's share of its row is that of what it has above the mean; the flux is still that of all light. */
+static void compensated_tables_hold_what_is_above_the_mean(void **state)
+{
+    (void)state;
+    static const uint32_t sizes[] = {2, 5, 16, 64};
+    for (int i = 0; i < 4; i++) {
+        fixture f = make_fixture(MAP_NOISE, sizes[i], HELIO_WEIGHTING_COMPENSATED);
+        fixture plain = make_fixture(MAP_NOISE, sizes[i], HELIO_WEIGHTING_SOLID_ANGLE);
+        const double mean = mean_luminance(&plain);
+        assert_true(fabs(mean_luminance(&f) / mean - 1) < 1e-9);
+        uint32_t above = 0, below = 0;
+        for (uint32_t face = 0; face < 6; face++) {
+            helio_table_view view = helio_tables_view(f.tables, face);
+            for (uint32_t row = 0; row < f.size; row++) {
+                const uint32_t *sums = view.rows + row * (f.size + 1);
+                double expected = 0;
+                for (uint32_t column = 0; column < f.size; column++)
+                    expected += fmax(0, exact_luminance(texel(&f, face, row, column)) - mean) *
+                                texel_solid_angle(f.size, row, column);
+                for (uint32_t column = 0; column < f.size; column++) {
+                    double over = exact_luminance(texel(&f, face, row, column)) - mean;
+                    bool is_drawn = sums[column + 1] > sums[column];
+                    if (fabs(over) > 1e-3 * mean) /* else the level's own rounding decides */
+                        assert_int_equal(is_drawn, over > 0);
+                    above += is_drawn;
+                    below += !is_drawn;
+                    if (is_drawn)
+                        assert_true(fabs((sums[column + 1] - sums[column]) / (double)sums[f.size] -
+                                         over * texel_solid_angle(f.size, row, column) / expected) < 1e-3);
+                }
+            }
+        }
+        assert_true(above > 0 && below > 0);
+        destroy_fixture(&plain);
+        destroy_fixture(&f);
+    }
+}
+
+static void compensated_tables_of_even_light_are_empty(void **state)
+{
+    (void)state;
+    fixture f = make_fixture(MAP_GREY, 16, HELIO_WEIGHTING_COMPENSATED);
+    helio_table_sample sample;
+    for (uint32_t face = 0; face < 6; face++)
+        assert_false(helio_tables_sample(f.tables, face, 0.3f, 0.6f, &sample));
+    assert_true(mean_luminance(&f) > 0);
+    destroy_fixture(&f);
+}
+
 static void weightings_have_names(void **state)
 {
     (void)state;
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 3; i++) {
         helio_weighting weighting = (helio_weighting)7;
-        assert_ok(helio_weighting_parse(helio_weighting_name(weightings[i]), &weighting));
-        assert_int_equal(weighting, weightings[i]);
+        assert_ok(helio_weighting_parse(helio_weighting_name((helio_weighting)i), &weighting));
+        assert_int_equal(weighting, i);
     }
     assert_string_equal(helio_weighting_name(HELIO_WEIGHTING_PAPER), "paper");
+    assert_string_equal(helio_weighting_name(HELIO_WEIGHTING_COMPENSATED), "compensated");
     helio_weighting kept = HELIO_WEIGHTING_PAPER;
     assert_refused(helio_weighting_parse("Paper", &kept));
     assert_non_null(strstr(helio_last_error(), "Paper"));
@@ -792,6 +856,8 @@ int main(void)
         cmocka_unit_test(update_takes_no_memory),
         cmocka_unit_test(creation_without_memory_fails_and_leaks_nothing),
         cmocka_unit_test(mistakes_are_refused_with_a_sentence),
+        cmocka_unit_test(compensated_tables_hold_what_is_above_the_mean),
+        cmocka_unit_test(compensated_tables_of_even_light_are_empty),
         cmocka_unit_test(weightings_have_names),
     };
     return cmocka_run_group_tests_name("tables", tests, NULL, NULL);

@@ -24,6 +24,9 @@ extern "C" {
 typedef enum helio_weighting {
     HELIO_WEIGHTING_SOLID_ANGLE = 0, /* a texel's weight is luminance x solid angle */
     HELIO_WEIGHTING_PAPER,           /* luminance alone, as the paper's Eq. 1 is written */
+    HELIO_WEIGHTING_COMPENSATED,     /* (luminance above the mean of the map) x solid angle: MIS compensation in its
+                                        simplest     form (Karlik et al., "MIS Compensation", SIGGRAPH Asia 2019). For
+                                        LIGHT_BRDF and     FACE_BRDF alone, whose BRDF samples see to the rest */
 } helio_weighting;
 
 HELIO_API const char *helio_weighting_name(helio_weighting weighting);
@@ -77,7 +80,8 @@ HELIO_API helio_table_view helio_tables_view(const helio_tables *tables, uint32_
 /* ---- strategies --------------------------------------------------------------------- */
 
 typedef enum helio_strategy {
-    HELIO_STRATEGY_AUTO = 0, /* the best we have; at present FACE_BRDF */
+    HELIO_STRATEGY_AUTO = 0, /* the best we have: PRODUCT_BRDF, but for frames whose light is so even that it does not
+                                pay to aim at it: BRDF */
     HELIO_STRATEGY_COSINE,   /* cosine about the normal */
     HELIO_STRATEGY_BRDF,     /* the material's own sampling */
     HELIO_STRATEGY_LIGHT,    /* one table over the whole map, blind to the normal: what most renderers do */
@@ -91,7 +95,7 @@ typedef enum helio_strategy {
 HELIO_API const char *helio_strategy_name(helio_strategy strategy);
 HELIO_API helio_status helio_strategy_parse(const char *name, helio_strategy *strategy);
 
-/* What AUTO stands for in this version; any other strategy is returned as it is. */
+/* What AUTO stands for in this version, even light apart; any other strategy is returned as it is. */
 HELIO_API helio_strategy helio_strategy_resolve(helio_strategy strategy);
 
 /* ---- pools: samples drawn ahead, read by every shading point ------------------------- */

@@ -71,7 +71,7 @@ static float share_of_need(float need, float even)
 /* Part of a point's samples that the surface technique takes. */
 static float surface_share(const helio_pools *pools, const helio_shading_point *point, const helio_estimate_desc *desc)
 {
-    if (pools->techniques == 0)
+    if (pools->techniques == 0 || pools->is_even)
         return 1.0f;
     if (pools->parts.surface == STRATEGY_SURFACE_NONE)
         return 0.0f;
@@ -164,7 +164,7 @@ static void begin(gathering *g, const helio_pools *pools, const helio_shading_po
     for (uint32_t k = 0; k < pools->techniques; k++)
         g->windows[k] = block->windows[k][i];
     g->pool = block->pools[0][i];
-    g->has_tiles = pools->bins != NULL && block->surface_share[i] > 0.0f;
+    g->has_tiles = pools->bins != NULL && !pools->is_even && block->surface_share[i] > 0.0f;
     if (g->has_tiles)
         begin_tiles(g, point->seed);
     if (g->counts.expected[TECHNIQUE_SURFACE] > 0.0f)

@@ -29,8 +29,9 @@ struct sky_row;
 
 typedef struct kernel_set {
     /* Prefix sums of the weights of one row of texels. rgb: [size][3]. solid_angles: [size], or NULL for luminance
-     * alone. sums: [size + 1], or NULL if only the total is wanted. The same bits with every instruction set. */
-    row_sum (*sum_row)(const float *rgb, const float *solid_angles, uint32_t size, uint32_t *sums);
+     * alone. level: luminance that does not count, 0 for luminance alone. sums: [size + 1], or NULL if only the total
+     * is wanted. The same bits with every instruction set. */
+    row_sum (*sum_row)(const float *rgb, const float *solid_angles, float level, uint32_t size, uint32_t *sums);
 
     /* Prefix sums of the weights that a bin of normals gives to the tiles. sums: [tiles + 1]. Returns their total. The
      * same bits with every instruction set. */
@@ -108,7 +109,7 @@ const kernel_set *kernels_of(isa set);
 _Static_assert(HELIO_LANES <= POOL_PADDING && BLOCK_SAMPLES % HELIO_LANES == 0 && POINT_BLOCK % HELIO_LANES == 0,
                "kernels read and write whole registers, also past the last sample");
 
-row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, uint32_t size, uint32_t *sums);
+row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, float level, uint32_t size, uint32_t *sums);
 uint32_t KERNEL(weigh_tiles)(const tiles *t, const normal_bin *bin, uint32_t *sums);
 void KERNEL(weigh_point)(const tiles *t, const tile_lobe *lobe, point_tiles *p);
 void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);

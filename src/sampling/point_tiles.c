@@ -50,6 +50,7 @@ void tile_lobe_prepare(tile_lobe *lobe, const tiles *t, const brdf *b)
 {
     const float rest = 1.0f - narrowness(t, b);
     *lobe = (tile_lobe){.kind = b->kind, .normal = b->normal, .edge = t->edge, .view_cosine = b->view_cosine};
+    lobe->slope = 0.25f / t->edge;
     lobe->diffuse = luminance_of(b->colours[0]);
     lobe->specular = luminance_of(b->colours[1]);
     if (b->kind == HELIO_MATERIAL_PHONG)

@@ -17,6 +17,7 @@ typedef struct tile_lobe {
     vec3 normal;
     vec3 axis;        /* PHONG: of the mirror direction. GGX: of the view */
     float edge;       /* sine of the radius of a tile: those down to -edge below the horizon reach above it */
+    float slope;      /* 1 / (4 edge) */
     float diffuse;    /* luminance of the diffuse lobe, 1/sr */
     float specular;   /* ... and of the specular one, as far as BRDF samples do not look after it */
     float sharpness;  /* PHONG: the lobe is 2^(-sharpness (1 - cosine)) */

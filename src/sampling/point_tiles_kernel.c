@@ -26,18 +26,18 @@ static void choose_groups(const tiles *t, vec3 normal, point_tiles *p)
 }
 
 /* The cosine between normal and a tile, but falling to 0 where the tile's last corner sinks below the horizon. */
-static inline float soft_cosine(float cosine, float edge)
+static inline float soft_cosine(float cosine, float edge, float slope)
 {
     float risen = cosine + edge;
     risen = risen > 0.0f ? risen : 0.0f;
-    return cosine < edge ? risen * risen / (4.0f * edge) : cosine;
+    return cosine < edge ? risen * risen * slope : cosine;
 }
 
 /* BRDF x cosine for a direction. */
 static inline __attribute__((always_inline)) float lobe_value(helio_material_kind kind, const tile_lobe *lobe,
                                                               vec3 direction)
 {
-    const float cosine = dot(lobe->normal, direction), soft = soft_cosine(cosine, lobe->edge);
+    const float cosine = dot(lobe->normal, direction), soft = soft_cosine(cosine, lobe->edge, lobe->slope);
     const float along = dot(lobe->axis, direction);
     if (kind == HELIO_MATERIAL_PHONG)
         return soft * (lobe->diffuse + lobe->specular * exp2_fast(lobe->sharpness * (along - 1.0f)));
@@ -50,23 +50,30 @@ static inline __attribute__((always_inline)) float lobe_value(helio_material_kin
     return soft * (lobe->diffuse + lobe->specular * (twice * twice) / (safe * safe * masking));
 }
 
-/* The weights of the chosen groups' tiles, and the largest of them. */
-static inline __attribute__((always_inline)) float weigh_groups(helio_material_kind kind, const tiles *t,
-                                                                const tile_lobe *given, const point_tiles *p,
-                                                                float *restrict weights)
+/* The weights of the chosen groups' tiles. */
+static inline __attribute__((always_inline)) void weigh_groups(helio_material_kind kind, const tiles *t,
+                                                               const tile_lobe *given, const point_tiles *p,
+                                                               float *restrict weights)
 {
     const tile_lobe lobe = *given;
-    int32_t largest_bits = 0;
     for (uint32_t k = 0; k < p->group_count; k++) {
         const uint32_t first = (uint32_t)p->groups[k] * TILE_GROUP;
         const float *x = t->x + first, *y = t->y + first, *z = t->z + first, *light = t->light + first;
         float *to = weights + (size_t)k * TILE_GROUP;
-#pragma omp simd reduction(max : largest_bits)
-        for (uint32_t i = 0; i < TILE_GROUP; i++) {
+#pragma omp simd
+        for (uint32_t i = 0; i < TILE_GROUP; i++)
             to[i] = light[i] * lobe_value(kind, &lobe, (vec3){x[i], y[i], z[i]});
-            int32_t bits = bits_of_float(to[i]);
-            largest_bits = bits > largest_bits ? bits : largest_bits;
-        }
+    }
+}
+
+/* See tables_kernel.c for why by its bits. */
+static float largest_of(const float *weights, uint32_t count)
+{
+    int32_t largest_bits = 0;
+#pragma omp simd reduction(max : largest_bits)
+    for (uint32_t i = 0; i < count; i++) {
+        int32_t bits = bits_of_float(weights[i]);
+        largest_bits = bits > largest_bits ? bits : largest_bits;
     }
     return float_of_bits(largest_bits);
 }
@@ -75,10 +82,13 @@ void KERNEL(weigh_point)(const tiles *t, const tile_lobe *lobe, point_tiles *p)
 {
     alignas(64) float weights[TILES_MOST];
     choose_groups(t, lobe->normal, p);
-    float largest = lobe->kind == HELIO_MATERIAL_PHONG ? weigh_groups(HELIO_MATERIAL_PHONG, t, lobe, p, weights)
-                                                       : weigh_groups(HELIO_MATERIAL_GGX, t, lobe, p, weights);
-    int exponent = fixed_point_exponent(largest, tables_summand_bits(t->count));
-    fixed_point_quantise(weights, p->group_count * TILE_GROUP, ldexpf(1.0f, exponent), p->weights);
+    if (lobe->kind == HELIO_MATERIAL_PHONG)
+        weigh_groups(HELIO_MATERIAL_PHONG, t, lobe, p, weights);
+    else
+        weigh_groups(HELIO_MATERIAL_GGX, t, lobe, p, weights);
+    const uint32_t count = p->group_count * TILE_GROUP;
+    int exponent = fixed_point_exponent(largest_of(weights, count), tables_summand_bits(t->count));
+    fixed_point_quantise(weights, count, ldexpf(1.0f, exponent), p->weights);
     uint32_t sum = 0;
     for (uint32_t k = 0; k < p->group_count; k++) {
         p->sums[k] = sum;

@@ -93,7 +93,7 @@ static void weigh_pools(const helio_pools *pools, const point_block *block, bool
     for (uint32_t i = 0; i < count; i++)
         worths->total[i] = 0.0;
     for (uint32_t face = 0; face < CUBE_FACES; face++)
-        weigh_face(block, count, face, tables->flux[face], no_beta, worths);
+        weigh_face(block, count, face, tables->worth[face], no_beta, worths);
 }
 
 static void expect(uint32_t count, const double *worths, const double *shares, float *expected)
@@ -104,11 +104,13 @@ static void expect(uint32_t count, const double *worths, const double *shares, f
 }
 
 /* Expected counts m_k: samples in proportion to beta_f x flux_f, and a share for the surface. All are 0 where no
- * light can come from above the horizon. */
+ * light can come from above the horizon; where compensated tables only say that there is nothing to compensate, the
+ * surface gets all. */
 static void expect_counts(const helio_pools *pools, const helio_estimate_desc *desc, point_block *block)
 {
     const uint32_t count = padded(block);
     const float samples = (float)desc->samples;
+    const bool is_compensated = pools->tables->weighting == HELIO_WEIGHTING_COMPENSATED;
     pool_worths worths;
     alignas(64) double shares[POINT_BLOCK];
     memset(block->expected, 0, sizeof block->expected);
@@ -120,9 +122,9 @@ static void expect_counts(const helio_pools *pools, const helio_estimate_desc *d
 #pragma omp simd
     for (uint32_t i = 0; i < count; i++) {
         bool lit = worths.total[i] > 0.0;
-        float by_surface = samples * block->surface_share[i];
+        float by_surface = samples * (lit ? block->surface_share[i] : is_compensated ? 1.0f : 0.0f);
         shares[i] = (lit ? (double)(samples - by_surface) : 0.0) / (lit ? worths.total[i] : 1.0);
-        block->expected[TECHNIQUE_SURFACE][i] = lit ? by_surface : 0.0f;
+        block->expected[TECHNIQUE_SURFACE][i] = by_surface;
     }
     for (uint32_t k = 0; k < pools->techniques; k++)
         expect(count, worths.of_pool[k], shares, block->expected[k]);

@@ -4,6 +4,7 @@
 #include "core/context.h"
 #include "core/error.h"
 #include "core/random.h"
+#include "sampling/evenness.h"
 #include "sampling/kernels.h"
 
 #include <string.h>
@@ -60,6 +61,18 @@ static void choose_sizes(helio_pools *pools, const helio_pools_desc *desc)
     }
 }
 
+/* Compensated tables leave out what BRDF samples are to see to. */
+static helio_status check_weighting(const helio_tables *tables, helio_strategy strategy)
+{
+    const bool is_mixed = strategy == HELIO_STRATEGY_LIGHT_BRDF || strategy == HELIO_STRATEGY_FACE_BRDF;
+    const bool has_light = strategy_divide(strategy).light != STRATEGY_LIGHT_NONE;
+    if (tables->weighting != HELIO_WEIGHTING_COMPENSATED || is_mixed || !has_light)
+        return HELIO_OK;
+    return fail(HELIO_ERR_ARGUMENT,
+                "the strategy %s cannot use compensated weights, which leave light out; take light+brdf or face+brdf",
+                helio_strategy_name(strategy));
+}
+
 helio_status helio_pools_create(helio_tables *tables, const helio_pools_desc *given, helio_pools **out)
 {
     if (out != NULL)
@@ -68,11 +81,13 @@ helio_status helio_pools_create(helio_tables *tables, const helio_pools_desc *gi
         return fail(HELIO_ERR_ARGUMENT, "helio_pools_create needs tables and a place for the result");
     helio_pools_desc desc;
     HELIO_TRY(resolve_desc(given, &desc));
+    HELIO_TRY(check_weighting(tables, desc.strategy));
     helio_pools *pools = context_allocate(tables->environment->context, 1, sizeof *pools);
     if (pools == NULL)
         return HELIO_ERR_MEMORY;
     pools->tables = tables;
     pools->strategy = desc.strategy;
+    pools->is_automatic = given == NULL || given->strategy == HELIO_STRATEGY_AUTO;
     pools->parts = strategy_divide(desc.strategy);
     choose_sizes(pools, &desc);
     helio_status status = allocate_arrays(pools);
@@ -159,6 +174,8 @@ helio_status helio_pools_draw(helio_pools *pools, uint32_t seed, uint32_t pass)
     if (pools->bins != NULL) {
         work.draw = kernels->draw_bin;
         normal_bins_update(pools->bins, pools->tables);
+        if (pools->is_automatic && pools->frame != environment->frame)
+            pools->is_even = evenness_holds(pools->bins->tiles, pools->tables);
         normal_bins_draw_lists(pools->bins, pools->tables, hash_combine(work.seed, pools->count));
     }
     context_parallel_for(environment->context, (size_t)pools->count * pieces_per_pool(pools), draw_piece, &work);

@@ -40,6 +40,8 @@ struct helio_pools {
     uint32_t count;       /* pools: 6, 1, 6 B^2 or 0 */
     uint32_t techniques;  /* pools of which a point reads: 6, 1 or 0 */
     uint32_t pool_length; /* samples in each: M, or 6 M where there is one pool */
+    bool is_automatic;    /* the strategy was chosen by AUTO, and so may be left where ... */
+    bool is_even;         /* ... the light is: all samples are then the surface's */
     normal_bins *bins;    /* what the pools of STRATEGY_LIGHT_BINS are drawn from; NULL for others */
     uint64_t frame;       /* of the environment, when drawn */
     /* [POOL_ARRAYS], arrays `stride` floats apart: [count][pool_length] each, and POOL_PADDING more that may be read.

@@ -48,7 +48,7 @@ helio_status strategy_check(helio_strategy strategy)
 
 helio_strategy helio_strategy_resolve(helio_strategy strategy)
 {
-    return strategy == HELIO_STRATEGY_AUTO ? HELIO_STRATEGY_FACE_BRDF : strategy;
+    return strategy == HELIO_STRATEGY_AUTO ? HELIO_STRATEGY_PRODUCT_BRDF : strategy;
 }
 
 strategy_parts strategy_divide(helio_strategy strategy)

@@ -16,7 +16,7 @@ enum { ROWS_AT_ONCE = 16 }; /* the piece of work of a thread */
 
 /* ---- creation ---- */
 
-static const char *const NAMES[] = {"solid-angle", "paper"};
+static const char *const NAMES[] = {"solid-angle", "paper", "compensated"};
 static const name_list WEIGHTINGS = NAME_LIST("weighting", NAMES);
 
 const char *helio_weighting_name(helio_weighting weighting)
@@ -52,7 +52,7 @@ helio_status helio_tables_create(helio_environment *environment, helio_weighting
     tables->row_densities = context_allocate(context, CUBE_FACES * size, sizeof *tables->row_densities);
     tables->row_sums = context_allocate(context, CUBE_FACES * size, sizeof *tables->row_sums);
     tables->row_fluxes = tables->row_sums;
-    if (weighting == HELIO_WEIGHTING_PAPER)
+    if (weighting != HELIO_WEIGHTING_SOLID_ANGLE)
         tables->row_fluxes = context_allocate(context, CUBE_FACES * size, sizeof *tables->row_fluxes);
     if (!tables->rows || !tables->marginals || !tables->row_densities || !tables->row_sums || !tables->row_fluxes) {
         helio_tables_destroy(tables);
@@ -78,26 +78,51 @@ void helio_tables_destroy(helio_tables *tables)
 
 /* ---- update ---- */
 
+static const float *texels_of(const helio_tables *tables, size_t index)
+{
+    return tables->environment->cube + index * tables->size * 3;
+}
+
+static const float *solid_angles_of(const helio_tables *tables, size_t index)
+{
+    return tables->environment->solid_angle + index % tables->size * tables->size;
+}
+
 static void build_row(helio_tables *tables, size_t index)
 {
-    const helio_environment *environment = tables->environment;
-    const kernel_set *kernels = kernels_of(context_isa(environment->context));
-    size_t size = tables->size, row = index % size;
-    const float *rgb = environment->cube + index * size * 3;
-    const float *solid_angles = environment->solid_angle + row * size;
-    bool paper = tables->weighting == HELIO_WEIGHTING_PAPER;
-    tables->row_sums[index] =
-        kernels->sum_row(rgb, paper ? NULL : solid_angles, tables->size, tables->rows + index * (size + 1));
-    if (paper)
-        tables->row_fluxes[index] = kernels->sum_row(rgb, solid_angles, tables->size, NULL);
+    const bool is_paper = tables->weighting == HELIO_WEIGHTING_PAPER;
+    const float *solid_angles = is_paper ? NULL : solid_angles_of(tables, index);
+    tables->row_sums[index] = kernels_of(context_isa(tables->environment->context))
+                                  ->sum_row(texels_of(tables, index), solid_angles, tables->level, tables->size,
+                                            tables->rows + index * ((size_t)tables->size + 1));
 }
+
+/* Where the weights are not the flux. */
+static void sum_flux_of_row(helio_tables *tables, size_t index)
+{
+    tables->row_fluxes[index] =
+        kernels_of(context_isa(tables->environment->context))
+            ->sum_row(texels_of(tables, index), solid_angles_of(tables, index), 0.0f, tables->size, NULL);
+}
+
+typedef struct row_work {
+    helio_tables *tables;
+    void (*build)(helio_tables *tables, size_t index);
+} row_work;
 
 static void build_rows(void *data, size_t piece)
 {
-    helio_tables *tables = data;
-    size_t rows = CUBE_FACES * (size_t)tables->size, end = (piece + 1) * ROWS_AT_ONCE;
+    const row_work *work = data;
+    size_t rows = CUBE_FACES * (size_t)work->tables->size, end = (piece + 1) * ROWS_AT_ONCE;
     for (size_t index = piece * ROWS_AT_ONCE; index < end && index < rows; index++)
-        build_row(tables, index);
+        work->build(work->tables, index);
+}
+
+static void for_all_rows(helio_tables *tables, void (*build)(helio_tables *tables, size_t index))
+{
+    row_work work = {tables, build};
+    size_t rows = CUBE_FACES * (size_t)tables->size;
+    context_parallel_for(tables->environment->context, (rows + ROWS_AT_ONCE - 1) / ROWS_AT_ONCE, build_rows, &work);
 }
 
 /* Position of the highest bit of sum x 2^-exponent; the sum must not be 0. */
@@ -157,18 +182,39 @@ static void find_row_densities(helio_tables *tables, size_t face)
     }
 }
 
+static double flux_of(const helio_tables *tables, row_sum sum)
+{
+    return ldexp((double)sum.sum, -sum.exponent) * 4.0 / ((double)tables->size * (double)tables->size);
+}
+
+static void find_fluxes(helio_tables *tables)
+{
+    const size_t size = tables->size;
+    for (size_t face = 0; face < CUBE_FACES; face++)
+        tables->flux[face] = flux_of(tables, tables_sum_rows(tables->row_fluxes + face * size, tables->size, NULL));
+}
+
+/* A little more, so that rounding leaves nothing of a constant map. */
+static float mean_luminance(const helio_tables *tables)
+{
+    double flux = 0.0;
+    for (int face = 0; face < CUBE_FACES; face++)
+        flux += tables->flux[face];
+    return (float)(flux / (4.0 * PI) * (1.0 + 0x1p-14));
+}
+
 static void build_face(void *data, size_t face)
 {
     helio_tables *tables = data;
-    size_t size = tables->size;
+    const size_t size = tables->size;
     row_sum weight =
         tables_sum_rows(tables->row_sums + face * size, tables->size, tables->marginals + face * (size + 1));
-    row_sum flux = tables->weighting == HELIO_WEIGHTING_PAPER
-                       ? tables_sum_rows(tables->row_fluxes + face * size, tables->size, NULL)
-                       : weight;
     find_row_densities(tables, face);
     tables->face_sums[face] = weight;
-    tables->flux[face] = ldexp((double)flux.sum, -flux.exponent) * 4.0 / ((double)size * (double)size);
+    if (tables->weighting == HELIO_WEIGHTING_SOLID_ANGLE)
+        tables->flux[face] = flux_of(tables, weight);
+    tables->worth[face] =
+        tables->weighting == HELIO_WEIGHTING_COMPENSATED ? flux_of(tables, weight) : tables->flux[face];
 }
 
 helio_status helio_tables_update(helio_tables *tables)
@@ -177,10 +223,14 @@ helio_status helio_tables_update(helio_tables *tables)
         return fail(HELIO_ERR_ARGUMENT, "helio_tables_update needs tables");
     if (tables->environment->frame == 0)
         return fail(HELIO_ERR_ARGUMENT, "the environment holds no map yet; call helio_environment_update first");
-    helio_context *context = tables->environment->context;
-    size_t rows = CUBE_FACES * (size_t)tables->size;
-    context_parallel_for(context, (rows + ROWS_AT_ONCE - 1) / ROWS_AT_ONCE, build_rows, tables);
-    context_parallel_for(context, CUBE_FACES, build_face, tables);
+    if (tables->weighting != HELIO_WEIGHTING_SOLID_ANGLE) {
+        for_all_rows(tables, sum_flux_of_row);
+        find_fluxes(tables);
+    }
+    if (tables->weighting == HELIO_WEIGHTING_COMPENSATED)
+        tables->level = mean_luminance(tables);
+    for_all_rows(tables, build_row);
+    context_parallel_for(tables->environment->context, CUBE_FACES, build_face, tables);
     tables_sum_rows(tables->face_sums, CUBE_FACES, tables->faces);
     tables->frame = tables->environment->frame;
     return HELIO_OK;

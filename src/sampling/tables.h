@@ -32,10 +32,13 @@ struct helio_tables {
     uint32_t *marginals;  /* [6][R + 1] */
     float *row_densities; /* [6][R]: what a unit of weight in this row adds to the density, see face_table_density() */
     row_sum *row_sums;    /* [6][R]: of the table's weights */
-    row_sum *row_fluxes;  /* [6][R]: of luminance x solid angle; the same array unless the weighting is the paper's */
+    row_sum *row_fluxes;  /* [6][R]: of luminance x solid angle; the same array for SOLID_ANGLE */
     row_sum face_sums[6]; /* of the marginals */
     uint32_t faces[7];    /* prefix sums over the faces: how the strategy LIGHT divides the whole map */
     double flux[6];       /* radiance unit x sr */
+    double worth[6];      /* what a point divides its samples among the faces by: the flux, but for COMPENSATED that of
+                             what is above the level */
+    float level;          /* luminance that does not count, for COMPENSATED; else 0 */
 };
 
 /* One face of the tables. */
