@@ -316,7 +316,7 @@ const cli_option option_table[] = {
     {.name = "weighting",
      .argument = "W",
      .initial = "solid-angle",
-     .choices = "solid-angle paper",
+     .choices = "solid-angle paper compensated",
      .help =
          "weight of a texel: luminance times its solid angle, or luminance alone, or times its solid angle what it has "
          "above the mean of the map (MIS compensation; for light+brdf and face+brdf)",
