@@ -660,6 +660,16 @@ const cli_option option_table[] = {
      .kind = OPTION_WHOLE,
      MEMBER(study.repeat),
      STUDY},
+    {.name = "reference-method",
+     .argument = "M",
+     .initial = "samples",
+     .choices = "samples quadrature",
+     .help =
+         "what errors are measured against: many samples by face+brdf, or the light of every texel, which is exact, "
+         "takes minutes for small pictures, and knows no shadows",
+     .kind = OPTION_CHOICE,
+     MEMBER(study.reference_method),
+     STUDY},
     {.name = "reference-spp",
      .argument = "N",
      .initial = "2048",

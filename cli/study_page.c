@@ -102,6 +102,8 @@ static void write_introduction(FILE *stream, const study_record *record)
 {
     const study_plan *plan = record->plan;
     const cli_options *options = plan->options;
+    char reference[STUDY_PLAN_REFERENCE];
+    study_plan_describe_reference(plan, reference);
     fputs("<h1>Heliostat study</h1>\n<p>", stream);
     fprintf(stream, "%u strateg%s at %u numbers of samples, in the light of %u environment%s, on %u material%s; ",
             plan->strategy_count, plan->strategy_count == 1 ? "y" : "ies", plan->spp_count, plan->environment_count,
@@ -125,12 +127,12 @@ static void write_introduction(FILE *stream, const study_record *record)
         "whole frame, from the map in memory to the picture: cube, tables, pools, camera rays and shading; the median "
         "of %u. Useful are samples with light and a BRDF above 0. ",
         options->study.repeat, options->study.repeat);
-    fprintf(
-        stream,
-        "The slope is that of log RMSE over log spp, with the reference's own error taken out: \u22121/2 for "
-        "independent unbiased samples, steeper for well spread ones, and flatter for what is biased. References have "
-        "%u samples per shading point. The same numbers are in study.csv and study.json beside this page.</p>\n",
-        options->study.reference_spp);
+    fprintf(stream,
+            "The slope is that of log RMSE over log spp, with the reference's own error taken out: \u22121/2 for "
+            "independent unbiased samples, steeper for well spread ones, and flatter for what is biased. References "
+            "are made "
+            "by %s. The same numbers are in study.csv and study.json beside this page.</p>\n",
+            reference);
 }
 
 /* ---- curves -------------------------------------------------------------------------------- */

@@ -57,6 +57,13 @@ size_t study_plan_index(const study_plan *plan, const study_point *point);
 /* Is this pair of environment and material shown in pictures? */
 bool study_plan_shows(const study_plan *plan, uint32_t environment, uint32_t material);
 
+/* Are references made by quadrature? */
+bool study_plan_has_quadrature(const study_plan *plan);
+
+/* What references are made by, in words. */
+enum { STUDY_PLAN_REFERENCE = 64 };
+void study_plan_describe_reference(const study_plan *plan, char text[STUDY_PLAN_REFERENCE]);
+
 /* The frame of a sequence that is studied, of so many. */
 uint32_t study_plan_still(uint32_t frames);
 

@@ -403,6 +403,33 @@ static void finds_environments(void **state)
     json_decref(study);
 }
 
+#define TRUTH SCENE "--size 32x18 --spp 16 --strategies face --repeat 1 --materials diffuse:0.8 "
+
+/* Two references differ, as RMSE, by about the root of the sum of their squared standard errors; and errors against
+ * them by no more than they do. Twice that leaves room for the chance that samples are. */
+static void takes_quadrature_for_the_truth(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+    write_map("map.pfm");
+    static const char *const aa[] = {"1", "2"};
+    for (int i = 0; i < 2; i++) {
+        char words[512];
+        snprintf(words, sizeof words, TRUTH "--aa %s --reference-method quadrature --out a%s", aa[i], aa[i]);
+        json_t *exact = run_study(words);
+        snprintf(words, sizeof words, TRUTH "--aa %s --reference-spp 16384 --out b%s", aa[i], aa[i]);
+        json_t *noisy = run_study(words);
+        double bound = number_of(cell_at(exact, 0), "reference_rmse");
+        double noise = number_of(cell_at(noisy, 0), "reference_rmse");
+        double error = number_of(cell_at(exact, 0), "rmse");
+        assert_true(noise < error / 5 && bound < (i == 0 ? noise / 100 : error / 5));
+        assert_true(fabs(error - number_of(cell_at(noisy, 0), "rmse")) < 2 * hypot(bound, noise));
+        json_decref(exact);
+        json_decref(noisy);
+    }
+    fails(TRUTH "--reference-spp 16384 --out a1 --resume", 1, "reference-method");
+}
+
 static void refuses_what_makes_no_study(void **state)
 {
     (void)state;
@@ -416,6 +443,7 @@ static void refuses_what_makes_no_study(void **state)
     fails(SCENE "--spp 4,16 --show-spp 8", 2, "--show-spp");
     fails(SCENE "--materials gold", 2, "materials");
     fails(SCENE "--ground shadow", 2, "--ground");
+    fails(SCENE "--reference-method quadrature --visibility ray", 2, "--visibility none");
     fails(SCENE "--envs ,", 2, "--envs");
     fails("study --envs none/*.exr", 1, "none/*.exr");
     fails(SCENE "word", 2, "word");
@@ -425,11 +453,17 @@ static void refuses_what_makes_no_study(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        program_test(errors_fall_as_they_must),  program_test(times_count_everything),
-        program_test(files_say_the_same),        program_test(goes_on_where_it_was_killed),
-        program_test(stops_when_asked),          program_test(tells_studies_apart),
-        program_test(takes_options_from_a_file), program_test(finds_environments),
-        program_test(gives_strategies_options),  program_test(refuses_what_makes_no_study),
+        program_test(errors_fall_as_they_must),
+        program_test(times_count_everything),
+        program_test(files_say_the_same),
+        program_test(goes_on_where_it_was_killed),
+        program_test(stops_when_asked),
+        program_test(tells_studies_apart),
+        program_test(takes_options_from_a_file),
+        program_test(finds_environments),
+        program_test(gives_strategies_options),
+        program_test(takes_quadrature_for_the_truth),
+        program_test(refuses_what_makes_no_study),
     };
     return cmocka_run_group_tests_name("study", tests, set_up_program, tear_down_program);
 }
