@@ -612,7 +612,7 @@ const cli_option option_table[] = {
      STUDY},
     {.name = "strategies",
      .argument = "LIST",
-     .initial = "face,face+brdf,light,light+brdf,brdf,cosine",
+     .initial = "face,face+brdf,light,light+brdf,product,product+brdf,brdf,cosine",
      .help = "those to compare, as --strategy of render takes them, also with some of the options no-beta, "
              "brdf-share=X, weighting=W "
              "and decorrelate=D behind colons, as in face:no-beta; lists are separated by commas, or by semicolons",

@@ -169,18 +169,17 @@ static double least_relmse(const study_record *record, uint32_t material, uint32
 static void write_mean_head(FILE *stream, const study_record *record, uint32_t material, bool is_at_time)
 {
     const study_plan *plan = record->plan;
+    static const char *const titles[] = {"relMSE", "Lab"};
     fputs("<tr><th>strategy</th>", stream);
-    for (uint32_t i = 0; i < plan->spp_count; i++) {
-        fputs("<th>relMSE, ", stream);
-        if (is_at_time) {
-            write_number(stream, study_mean_at_time(record, material, 0, i).ms);
-            fputs(" ms</th>", stream);
-        } else {
-            fprintf(stream, "%u spp</th>", plan->spp[i]);
-        }
+    for (uint32_t i = 0; i < 2 * plan->spp_count; i++) {
+        uint32_t spp = i % plan->spp_count;
+        fprintf(stream, "<th>%s, ", titles[i / plan->spp_count]);
+        if (is_at_time)
+            write_number(stream, study_mean_at_time(record, material, 0, spp).ms);
+        else
+            fprintf(stream, "%u", plan->spp[spp]);
+        fputs(is_at_time ? " ms</th>" : " spp</th>", stream);
     }
-    for (uint32_t i = 0; i < plan->spp_count; i++)
-        fprintf(stream, "<th>Lab%s%u%s</th>", is_at_time ? ", time of the slowest at " : ", ", plan->spp[i], " spp");
     fputs(is_at_time ? "</tr>\n" : "<th>useful</th></tr>\n", stream);
 }
 
