@@ -38,9 +38,9 @@ static int take_strategy(study_plan *plan, const char *item)
     int code = study_strategy_parse(item, plan->options, &strategy);
     if (code != EXIT_CODE_OK)
         return code;
-    for (uint32_t i = 0; i < plan->strategy_count; i++)
-        if (is(plan->strategies[i].name, strategy.name))
-            return message_usage("--strategies names %s twice", strategy.name);
+    uint32_t other;
+    if (study_plan_find(plan, strategy.name, &other))
+        return message_usage("--strategies names %s twice", strategy.name);
     if (plan->strategy_count == STUDY_LIST)
         return message_usage("--strategies takes at most %d", STUDY_LIST);
     plan->strategies[plan->strategy_count++] = strategy;
@@ -288,6 +288,16 @@ size_t study_plan_index(const study_plan *plan, const study_point *point)
 {
     size_t index = (size_t)point->environment * plan->material_count + point->material;
     return (index * plan->strategy_count + point->strategy) * plan->spp_count + point->spp;
+}
+
+bool study_plan_find(const study_plan *plan, const char *name, uint32_t *strategy)
+{
+    for (uint32_t i = 0; i < plan->strategy_count; i++)
+        if (is(plan->strategies[i].name, name)) {
+            *strategy = i;
+            return true;
+        }
+    return false;
 }
 
 bool study_plan_shows(const study_plan *plan, uint32_t environment, uint32_t material)

@@ -54,6 +54,9 @@ size_t study_plan_count(const study_plan *plan);
 study_point study_plan_point(const study_plan *plan, size_t index);
 size_t study_plan_index(const study_plan *plan, const study_point *point);
 
+/* The place of a strategy of this name, options of its own included. False: there is none. */
+bool study_plan_find(const study_plan *plan, const char *name, uint32_t *strategy);
+
 /* Is this pair of environment and material shown in pictures? */
 bool study_plan_shows(const study_plan *plan, uint32_t environment, uint32_t material);
 

@@ -266,6 +266,64 @@ static void files_say_the_same(void **state)
     json_decref(study);
 }
 
+/* Cells of two environments, three strategies and two numbers of samples, of which the second one is shown. */
+static double relmse_of(const json_t *study, size_t environment, size_t strategy)
+{
+    return number_of(cell_at(study, (environment * 3 + strategy) * 2 + 1), "relmse");
+}
+
+static const json_t *ratio_at(const json_t *study, size_t strategy, size_t place, const char *against)
+{
+    const json_t *ratio = json_array_get(member(study, "ratios"), 4 * strategy + place);
+    assert_non_null(ratio);
+    assert_string_equal(text_of(ratio, "against"), against);
+    assert_true(number_of(ratio, "spp") == 16);
+    return ratio;
+}
+
+/* Files have nine digits. */
+static bool is_near(double value, double expected)
+{
+    return fabs(value / expected - 1) < 1e-6;
+}
+
+static void compare_ratio(const json_t *study, const char *tables, size_t strategy)
+{
+    static const char *const names[] = {"map", "constant:1,0.5,0.25"};
+    const json_t *ratio = ratio_at(study, strategy, 0, "face");
+    double parts[2];
+    char cell[128];
+    for (size_t i = 0; i < 2; i++)
+        parts[i] = relmse_of(study, i, strategy) / relmse_of(study, i, 0);
+    assert_true(is_near(number_of(ratio, "mean"), sqrt(parts[0] * parts[1])));
+    assert_true(is_near(number_of(ratio, "worst"), fmax(parts[0], parts[1])));
+    assert_string_equal(text_of(ratio, "worst_environment"), names[parts[1] > parts[0]]);
+    snprintf(cell, sizeof cell, "| `%s` | %.3g (%.3g, %s) |", text_of(ratio, "strategy"), number_of(ratio, "mean"),
+             number_of(ratio, "worst"), text_of(ratio, "worst_environment"));
+    if (strstr(tables, cell) == NULL)
+        fail_msg("the tables have no cell %s", cell);
+}
+
+static void holds_strategies_against_others(void **state)
+{
+    static char tables[1 << 14];
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+    write_map("map.pfm");
+    json_t *study = run_study(SCENE "--spp 4,16 --show-spp 16 --strategies face,light+brdf,product --reference-spp 256 "
+                                    "--out s --envs map.pfm;constant:1,0.5,0.25");
+    read_text("s/study.md", tables, sizeof tables);
+    assert_int_equal(json_array_size(member(study, "ratios")), 3 * 4);
+    compare_ratio(study, tables, 1);
+    compare_ratio(study, tables, 2);
+    /* In the time of face it has the samples that it has, and no strategy is better or worse than itself. */
+    assert_string_equal(text_of(ratio_at(study, 0, 1, "face"), "time_of"), "face");
+    assert_true(is_near(number_of(ratio_at(study, 0, 1, "face"), "mean"), 1));
+    assert_true(is_near(number_of(ratio_at(study, 1, 2, "light+brdf"), "mean"), 1));
+    assert_non_null(strstr(tables, " (16) |\n| `light+brdf` |"));
+    json_decref(study);
+}
+
 static void assert_same_errors(const json_t *study, const json_t *other)
 {
     static const char *const names[] = {"relmse",  "rmse",         "lab_mean",      "flip",
@@ -463,6 +521,7 @@ int main(void)
         program_test(finds_environments),
         program_test(gives_strategies_options),
         program_test(takes_quadrature_for_the_truth),
+        program_test(holds_strategies_against_others),
         program_test(refuses_what_makes_no_study),
     };
     return cmocka_run_group_tests_name("study", tests, set_up_program, tear_down_program);
