@@ -369,6 +369,42 @@ static void limits_of_the_host_are_kept(void **state)
     assert_ok(status);
 }
 
+static void small_files_of_the_host_are_told(void **state)
+{
+    (void)state;
+    struct rlimit before;
+    getrlimit(RLIMIT_FSIZE, &before);
+    const struct rlimit files = {100, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &files);
+    helio_mesh *mesh;
+    helio_status status = load(import_square, &LIMITS, &mesh);
+    setrlimit(RLIMIT_FSIZE, &before);
+    assert_int_equal(status, HELIO_ERR_IO);
+    assert_non_null(strstr(helio_last_error(), "some.ply is not read"));
+    assert_non_null(strstr(helio_last_error(), "no file of more than 100 bytes"));
+    expect_square();
+}
+
+/* Of 3 MiB. With address sanitizer there is memory for it, but no file. */
+static helio_status import_large(helio_context *own, const char *path, const mesh_import_options *options,
+                                 mesh_arrays *arrays)
+{
+    (void)path, (void)options;
+    *arrays = (mesh_arrays){.vertex_count = 1 << 18};
+    arrays->positions = context_allocate(own, arrays->vertex_count, 12);
+    return arrays->positions != NULL ? HELIO_OK : HELIO_ERR_MEMORY;
+}
+
+/* The limit of files is that of memory where the host has no lower one. */
+static void large_meshes_are_a_matter_of_memory(void **state)
+{
+    (void)state;
+    mesh_limits limits = LIMITS;
+    limits.memory = MIB;
+    expect_sentence(import_large, &limits, HELIO_ERR_MEMORY,
+                    "some.ply needs more than the 1 MiB of memory allowed for reading it");
+}
+
 static void memory_is_limited(void **state)
 {
     (void)state;
@@ -671,6 +707,8 @@ int main(void)
         TEST(time_is_limited),
         TEST(last_words_of_a_child_are_heard),
         TEST(limits_of_the_host_are_kept),
+        TEST(small_files_of_the_host_are_told),
+        TEST(large_meshes_are_a_matter_of_memory),
         TEST(memory_is_limited),
         TEST(texts_hold_no_control_characters),
         TEST(a_flood_of_messages_is_cut_off),
