@@ -3,11 +3,12 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
-enum { LEFT = 58, RIGHT = 84, TOP = 30, BOTTOM = 46, MOST_LABELS = 7 };
+enum { LEFT = 58, TOP = 30, BOTTOM = 46, NAMES_GAP = 8, MOST_LABELS = 7 };
 
 static const uint32_t INK = 0x222222, FAINT = 0x666666, GRID = 0xe2e2e2;
-static const double FONT = 11;
+static const double FONT = 11, LETTER = 7.2; /* width of a bold letter, rather too much */
 
 /* An axis: numbers from low to high lie between two places. */
 typedef struct chart_axis {
@@ -186,14 +187,25 @@ static void draw_names(const frame *area, const chart *subject)
     for (uint32_t s = 0; s < subject->series_count; s++, y += 15) {
         const chart_series *series = &subject->series[s];
         const canvas_text style = {series->colour, FONT, true, CANVAS_START, false};
-        area->on->text(area->on, &style, area->x.to + 8, y, series->name);
+        area->on->text(area->on, &style, area->x.to + NAMES_GAP, y, series->name);
     }
+}
+
+/* What the longest name takes, up to half of the chart. */
+static double names_width(const chart *subject)
+{
+    size_t longest = 0;
+    for (uint32_t s = 0; s < subject->series_count; s++) {
+        size_t length = strlen(subject->series[s].name);
+        longest = length > longest ? length : longest;
+    }
+    return fmin(NAMES_GAP + LETTER * (double)longest, CHART_WIDTH / 2.0);
 }
 
 void chart_draw(canvas *on, const chart *subject, double x, double y)
 {
     frame area = {.on = on,
-                  .x = {(double)INFINITY, 0, x + LEFT, x + CHART_WIDTH - RIGHT},
+                  .x = {(double)INFINITY, 0, x + LEFT, x + CHART_WIDTH - names_width(subject)},
                   .y = {(double)INFINITY, 0, y + CHART_HEIGHT - BOTTOM, y + TOP}};
     find_ranges(subject, &area);
     if (subject->x_ticks != NULL)

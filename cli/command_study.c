@@ -6,6 +6,7 @@
 #include "study_csv.h"
 #include "study_file.h"
 #include "study_job.h"
+#include "study_markdown.h"
 #include "study_page.h"
 #include "study_sheets.h"
 #include "study_summary.h"
@@ -24,13 +25,6 @@ static void print_number(double value, int width)
         printf(" %*s", width, "-");
 }
 
-static study_mean mean_at(const study_record *record, uint32_t material, uint32_t strategy, uint32_t spp,
-                          bool is_at_time)
-{
-    return is_at_time ? study_mean_at_time(record, material, strategy, spp)
-                      : study_mean_at_spp(record, material, strategy, spp);
-}
-
 static int name_width(const study_plan *plan)
 {
     size_t width = strlen("equal samples");
@@ -41,14 +35,15 @@ static int name_width(const study_plan *plan)
     return (int)width;
 }
 
-static void print_head(const study_record *record, uint32_t material, bool is_at_time)
+static void print_head(const study_record *record, uint32_t material, int terms)
 {
     const study_plan *plan = record->plan;
+    bool is_at_time = terms != STUDY_EQUAL_SAMPLES;
     printf("  %-*s", name_width(plan), is_at_time ? "equal time" : "equal samples");
     for (uint32_t i = 0; i < plan->spp_count; i++) {
         char head[32];
         if (is_at_time)
-            snprintf(head, sizeof head, "%.3g ms", mean_at(record, material, 0, i, true).ms);
+            snprintf(head, sizeof head, "%.3g ms", study_score_mean(record, material, 0, i, terms).ms);
         else
             snprintf(head, sizeof head, "%u spp", plan->spp[i]);
         printf(" %10s", head);
@@ -56,19 +51,20 @@ static void print_head(const study_record *record, uint32_t material, bool is_at
     printf("  %*s%s\n", 7 * (int)plan->spp_count - 1, "Lab of each", is_at_time ? "" : "   useful");
 }
 
-static void print_means(const study_record *record, uint32_t material, bool is_at_time)
+static void print_means(const study_record *record, uint32_t material, int terms)
 {
     const study_plan *plan = record->plan;
-    print_head(record, material, is_at_time);
+    print_head(record, material, terms);
     for (uint32_t s = 0; s < plan->strategy_count; s++) {
         printf("  %-*s", name_width(plan), plan->strategies[s].name);
         for (uint32_t i = 0; i < plan->spp_count; i++)
-            print_number(mean_at(record, material, s, i, is_at_time).relmse, 10);
+            print_number(study_score_mean(record, material, s, i, terms).relmse, 10);
         printf(" ");
         for (uint32_t i = 0; i < plan->spp_count; i++)
-            print_number(mean_at(record, material, s, i, is_at_time).lab, 6);
-        if (!is_at_time)
-            printf("  %5.1f %%", 100 * study_mean_at_spp(record, material, s, plan->spp_count - 1).useful);
+            print_number(study_score_mean(record, material, s, i, terms).lab, 6);
+        if (terms == STUDY_EQUAL_SAMPLES)
+            printf("  %5.1f %%",
+                   100 * study_score_mean(record, material, s, plan->spp_count - 1, STUDY_EQUAL_SAMPLES).useful);
         printf("\n");
     }
 }
@@ -81,8 +77,8 @@ static void print_summary(const study_record *record)
         if (plan->environment_count > 1)
             printf(", geometric mean over %u environments", plan->environment_count);
         printf("\n");
-        print_means(record, material, false);
-        print_means(record, material, true);
+        print_means(record, material, STUDY_EQUAL_SAMPLES);
+        print_means(record, material, STUDY_TIME_OF_SLOWEST);
     }
 }
 
@@ -90,10 +86,13 @@ static void print_summary(const study_record *record)
 
 static int write_results(const study_job *job)
 {
-    char page[STUDY_PATH], table[STUDY_PATH];
+    char page[STUDY_PATH], table[STUDY_PATH], tables[STUDY_PATH];
     study_job_path(job->plan, "study.html", page);
     study_job_path(job->plan, "study.csv", table);
+    study_job_path(job->plan, "study.md", tables);
     int code = study_csv_write(&job->record, table);
+    if (code == EXIT_CODE_OK)
+        code = study_markdown_write(&job->record, tables);
     if (code == EXIT_CODE_OK)
         code = study_charts_write(&job->record);
     if (code == EXIT_CODE_OK)

@@ -612,7 +612,7 @@ const cli_option option_table[] = {
      STUDY},
     {.name = "strategies",
      .argument = "LIST",
-     .initial = "face,face+brdf,light,light+brdf,brdf,cosine",
+     .initial = "face,face+brdf,light,light+brdf,product,product+brdf,brdf,cosine",
      .help = "those to compare, as --strategy of render takes them, also with some of the options no-beta, "
              "brdf-share=X, weighting=W "
              "and decorrelate=D behind colons, as in face:no-beta; lists are separated by commas, or by semicolons",
@@ -659,6 +659,16 @@ const cli_option option_table[] = {
              "PSNR and FLIP are those of the first",
      .kind = OPTION_WHOLE,
      MEMBER(study.repeat),
+     STUDY},
+    {.name = "reference-method",
+     .argument = "M",
+     .initial = "samples",
+     .choices = "samples quadrature",
+     .help =
+         "what errors are measured against: many samples by face+brdf, or the light of every texel, which is exact, "
+         "takes minutes for small pictures, and knows no shadows",
+     .kind = OPTION_CHOICE,
+     MEMBER(study.reference_method),
      STUDY},
     {.name = "reference-spp",
      .argument = "N",

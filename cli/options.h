@@ -67,7 +67,7 @@ typedef struct compare_options {
 
 /* What study alone takes. Lists are separated by commas, or by semicolons where there is one. */
 typedef struct study_options {
-    const char *file, *strategies, *spp, *envs, *materials, *visibility, *shown_spp, *out;
+    const char *file, *strategies, *spp, *envs, *materials, *visibility, *shown_spp, *reference_method, *out;
     uint32_t repeat, reference_spp, sequence, pictures;
     uint32_t picture_size[2]; /* width, height */
     double turn;              /* degrees */

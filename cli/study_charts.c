@@ -48,7 +48,7 @@ chart study_chart_mean(const study_record *record, uint32_t material, bool is_ov
         chart_series *series = &made.series[s];
         series->count = plan->spp_count;
         for (uint32_t i = 0; i < plan->spp_count; i++) {
-            study_mean mean = study_mean_at_spp(record, material, s, i);
+            study_score mean = study_score_mean(record, material, s, i, STUDY_EQUAL_SAMPLES);
             series->x[i] = is_over_time ? mean.ms : plan->spp[i];
             series->y[i] = sqrt(mean.relmse);
         }

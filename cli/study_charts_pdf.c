@@ -39,8 +39,9 @@ static int write_mean(const study_record *record, uint32_t material)
 {
     char name[64];
     two_charts both = {.charts = {study_chart_mean(record, material, false), study_chart_mean(record, material, true)}};
-    snprintf(both.heading, sizeof both.heading, "%.400s, means over %u environments",
-             record->plan->materials[material].name, record->plan->environment_count);
+    snprintf(both.heading, sizeof both.heading, "%.400s, means over %u environment%s",
+             record->plan->materials[material].name, record->plan->environment_count,
+             record->plan->environment_count == 1 ? "" : "s");
     snprintf(name, sizeof name, "curves/means-%u.pdf", material + 1);
     return write_charts(record->plan, name, &both);
 }

@@ -266,15 +266,21 @@ static uint32_t truth_spp(const study_job *job, uint32_t frame)
     return spp / 4;
 }
 
+static study_truth_desc describe_truth(const study_job *job, uint32_t frame)
+{
+    return (study_truth_desc){.renderer = study_renderer_desc(job),
+                              .camera = job->camera,
+                              .is_quadrature = study_plan_has_quadrature(job->plan),
+                              .spp = truth_spp(job, frame),
+                              .seed = study_seed_of(job, frame, 0)};
+}
+
 static int render_truth(study_job *job, uint32_t frame, const char *path)
 {
     bool is_whole;
     const study_turn turn = study_turn_of(job->plan);
-    const study_truth_desc desc = {.renderer = study_renderer_desc(job),
-                                   .camera = job->camera,
-                                   .spp = truth_spp(job, frame),
-                                   .seed = study_seed_of(job, frame, 0),
-                                   .progress = &job->progress};
+    study_truth_desc desc = describe_truth(job, frame);
+    desc.progress = &job->progress;
     int code = check(study_light_apply(&job->light, frame, &turn, job->environment, NULL));
     if (code != EXIT_CODE_OK)
         return code;
@@ -384,11 +390,12 @@ static int measure_environment(study_job *job, uint32_t environment)
 static double count_work(const study_job *job)
 {
     const study_plan *plan = job->plan;
+    const study_truth_desc truth = describe_truth(job, 0);
     double work = 0;
     for (size_t i = 0; i < study_plan_count(plan); i++) {
         study_point point = study_plan_point(plan, i);
         if (point.strategy == 0 && point.spp == 0 && has_work(job, &point))
-            work += plan->options->study.sequence * study_truth_work(plan->options->study.reference_spp);
+            work += plan->options->study.sequence * study_truth_work(&truth);
         if (!is_finished(job, &point))
             work += study_measure_work(plan, &point);
     }

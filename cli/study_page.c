@@ -102,6 +102,8 @@ static void write_introduction(FILE *stream, const study_record *record)
 {
     const study_plan *plan = record->plan;
     const cli_options *options = plan->options;
+    char reference[STUDY_PLAN_REFERENCE];
+    study_plan_describe_reference(plan, reference);
     fputs("<h1>Heliostat study</h1>\n<p>", stream);
     fprintf(stream, "%u strateg%s at %u numbers of samples, in the light of %u environment%s, on %u material%s; ",
             plan->strategy_count, plan->strategy_count == 1 ? "y" : "ies", plan->spp_count, plan->environment_count,
@@ -125,12 +127,12 @@ static void write_introduction(FILE *stream, const study_record *record)
         "whole frame, from the map in memory to the picture: cube, tables, pools, camera rays and shading; the median "
         "of %u. Useful are samples with light and a BRDF above 0. ",
         options->study.repeat, options->study.repeat);
-    fprintf(
-        stream,
-        "The slope is that of log RMSE over log spp, with the reference's own error taken out: \u22121/2 for "
-        "independent unbiased samples, steeper for well spread ones, and flatter for what is biased. References have "
-        "%u samples per shading point. The same numbers are in study.csv and study.json beside this page.</p>\n",
-        options->study.reference_spp);
+    fprintf(stream,
+            "The slope is that of log RMSE over log spp, with the reference's own error taken out: \u22121/2 for "
+            "independent unbiased samples, steeper for well spread ones, and flatter for what is biased. References "
+            "are made "
+            "by %s. The same numbers are in study.csv and study.json beside this page.</p>\n",
+            reference);
 }
 
 /* ---- curves -------------------------------------------------------------------------------- */
@@ -149,66 +151,60 @@ static void write_charts(FILE *stream, const chart *first, const chart *second)
 
 /* ---- means --------------------------------------------------------------------------------- */
 
-static study_mean mean_at(const study_record *record, uint32_t material, uint32_t strategy, uint32_t spp,
-                          bool is_at_time)
-{
-    return is_at_time ? study_mean_at_time(record, material, strategy, spp)
-                      : study_mean_at_spp(record, material, strategy, spp);
-}
-
-static double least_relmse(const study_record *record, uint32_t material, uint32_t spp, bool is_at_time)
+static double least_relmse(const study_record *record, uint32_t material, uint32_t spp, int terms)
 {
     double least = (double)INFINITY;
     for (uint32_t s = 0; s < record->plan->strategy_count; s++)
-        least = fmin(least, mean_at(record, material, s, spp, is_at_time).relmse); /* passes over NaN */
+        least = fmin(least, study_score_mean(record, material, s, spp, terms).relmse); /* passes over NaN */
     return least;
 }
 
-static void write_mean_head(FILE *stream, const study_record *record, uint32_t material, bool is_at_time)
+static void write_mean_head(FILE *stream, const study_record *record, uint32_t material, int terms)
 {
     const study_plan *plan = record->plan;
+    static const char *const titles[] = {"relMSE", "Lab"};
+    bool is_at_time = terms != STUDY_EQUAL_SAMPLES;
     fputs("<tr><th>strategy</th>", stream);
-    for (uint32_t i = 0; i < plan->spp_count; i++) {
-        fputs("<th>relMSE, ", stream);
-        if (is_at_time) {
-            write_number(stream, study_mean_at_time(record, material, 0, i).ms);
-            fputs(" ms</th>", stream);
-        } else {
-            fprintf(stream, "%u spp</th>", plan->spp[i]);
-        }
+    for (uint32_t i = 0; i < 2 * plan->spp_count; i++) {
+        uint32_t spp = i % plan->spp_count;
+        fprintf(stream, "<th>%s, ", titles[i / plan->spp_count]);
+        if (is_at_time)
+            write_number(stream, study_score_mean(record, material, 0, spp, terms).ms);
+        else
+            fprintf(stream, "%u", plan->spp[spp]);
+        fputs(is_at_time ? " ms</th>" : " spp</th>", stream);
     }
-    for (uint32_t i = 0; i < plan->spp_count; i++)
-        fprintf(stream, "<th>Lab%s%u%s</th>", is_at_time ? ", time of the slowest at " : ", ", plan->spp[i], " spp");
     fputs(is_at_time ? "</tr>\n" : "<th>useful</th></tr>\n", stream);
 }
 
-static void write_mean_table(FILE *stream, const study_record *record, uint32_t material, bool is_at_time)
+static void write_mean_table(FILE *stream, const study_record *record, uint32_t material, int terms)
 {
     const study_plan *plan = record->plan;
+    bool is_at_time = terms != STUDY_EQUAL_SAMPLES;
     fprintf(stream, "<div class=\"scroll\"><table><caption>%s</caption>\n",
             is_at_time ? "At equal time: with as many samples (their number in brackets) as fit into the time that the "
                          "slowest strategy takes; \u2013 beyond 64 times what was measured"
                        : "At equal samples");
-    write_mean_head(stream, record, material, is_at_time);
+    write_mean_head(stream, record, material, terms);
     for (uint32_t s = 0; s < plan->strategy_count; s++) {
         fputs("<tr>", stream);
         write_strategy(stream, plan, s);
         for (uint32_t i = 0; i < plan->spp_count; i++) {
-            double relmse = mean_at(record, material, s, i, is_at_time).relmse;
-            fputs(relmse == least_relmse(record, material, i, is_at_time) ? "<td class=\"best\">" : "<td>", stream);
+            double relmse = study_score_mean(record, material, s, i, terms).relmse;
+            fputs(relmse == least_relmse(record, material, i, terms) ? "<td class=\"best\">" : "<td>", stream);
             write_number(stream, relmse);
             if (is_at_time && isfinite(relmse))
-                fprintf(stream, " (%.3g)", study_mean_at_time(record, material, s, i).spp);
+                fprintf(stream, " (%.3g)", study_score_mean(record, material, s, i, terms).spp);
             fputs("</td>", stream);
         }
         for (uint32_t i = 0; i < plan->spp_count; i++) {
             fputs("<td>", stream);
-            write_number(stream, mean_at(record, material, s, i, is_at_time).lab);
+            write_number(stream, study_score_mean(record, material, s, i, terms).lab);
             fputs("</td>", stream);
         }
-        if (!is_at_time)
+        if (terms == STUDY_EQUAL_SAMPLES)
             fprintf(stream, "<td>%.1f %%</td>",
-                    100 * study_mean_at_spp(record, material, s, plan->spp_count - 1).useful);
+                    100 * study_score_mean(record, material, s, plan->spp_count - 1, STUDY_EQUAL_SAMPLES).useful);
         fputs("</tr>\n", stream);
     }
     fputs("</table></div>\n", stream);
@@ -225,8 +221,8 @@ static void write_means(FILE *stream, const study_record *record)
         fputs("<h3>", stream);
         write_text(stream, plan->materials[material].name);
         fputs("</h3>\n", stream);
-        write_mean_table(stream, record, material, false);
-        write_mean_table(stream, record, material, true);
+        write_mean_table(stream, record, material, STUDY_EQUAL_SAMPLES);
+        write_mean_table(stream, record, material, STUDY_TIME_OF_SLOWEST);
         write_charts(stream, &over_spp, &over_time);
     }
 }

@@ -38,9 +38,9 @@ static int take_strategy(study_plan *plan, const char *item)
     int code = study_strategy_parse(item, plan->options, &strategy);
     if (code != EXIT_CODE_OK)
         return code;
-    for (uint32_t i = 0; i < plan->strategy_count; i++)
-        if (is(plan->strategies[i].name, strategy.name))
-            return message_usage("--strategies names %s twice", strategy.name);
+    uint32_t other;
+    if (study_plan_find(plan, strategy.name, &other))
+        return message_usage("--strategies names %s twice", strategy.name);
     if (plan->strategy_count == STUDY_LIST)
         return message_usage("--strategies takes at most %d", STUDY_LIST);
     plan->strategies[plan->strategy_count++] = strategy;
@@ -226,6 +226,9 @@ static int check_words(const study_plan *plan)
         return message_usage("--backend vulkan is not in this version; give auto or cpu");
     if (plan->ground == HELIO_GROUND_SHADOW)
         return message_usage("study compares the light of surfaces, and --ground shadow is none; give none or plane");
+    if (study_plan_has_quadrature(plan) && !is(options->study.visibility, "none"))
+        return message_usage(
+            "--reference-method quadrature knows no shadows; give --visibility none, or --reference-method samples");
     if (helio_camera_parse(options->camera, NULL, aspect, NULL) != HELIO_OK)
         return message_usage("--camera: %s", helio_last_error());
     return EXIT_CODE_OK;
@@ -287,9 +290,33 @@ size_t study_plan_index(const study_plan *plan, const study_point *point)
     return (index * plan->strategy_count + point->strategy) * plan->spp_count + point->spp;
 }
 
+bool study_plan_find(const study_plan *plan, const char *name, uint32_t *strategy)
+{
+    for (uint32_t i = 0; i < plan->strategy_count; i++)
+        if (is(plan->strategies[i].name, name)) {
+            *strategy = i;
+            return true;
+        }
+    return false;
+}
+
 bool study_plan_shows(const study_plan *plan, uint32_t environment, uint32_t material)
 {
     return (size_t)environment * plan->material_count + material < plan->options->study.pictures;
+}
+
+bool study_plan_has_quadrature(const study_plan *plan)
+{
+    return is(plan->options->study.reference_method, "quadrature");
+}
+
+void study_plan_describe_reference(const study_plan *plan, char text[STUDY_PLAN_REFERENCE])
+{
+    if (study_plan_has_quadrature(plan))
+        snprintf(text, STUDY_PLAN_REFERENCE, "quadrature over all texels");
+    else
+        snprintf(text, STUDY_PLAN_REFERENCE, "%u samples of face+brdf per shading point",
+                 plan->options->study.reference_spp);
 }
 
 uint32_t study_plan_still(uint32_t frames)

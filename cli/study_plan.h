@@ -54,8 +54,18 @@ size_t study_plan_count(const study_plan *plan);
 study_point study_plan_point(const study_plan *plan, size_t index);
 size_t study_plan_index(const study_plan *plan, const study_point *point);
 
+/* The place of a strategy of this name, options of its own included. False: there is none. */
+bool study_plan_find(const study_plan *plan, const char *name, uint32_t *strategy);
+
 /* Is this pair of environment and material shown in pictures? */
 bool study_plan_shows(const study_plan *plan, uint32_t environment, uint32_t material);
+
+/* Are references made by quadrature? */
+bool study_plan_has_quadrature(const study_plan *plan);
+
+/* What references are made by, in words. */
+enum { STUDY_PLAN_REFERENCE = 64 };
+void study_plan_describe_reference(const study_plan *plan, char text[STUDY_PLAN_REFERENCE]);
 
 /* The frame of a sequence that is studied, of so many. */
 uint32_t study_plan_still(uint32_t frames);

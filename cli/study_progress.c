@@ -7,7 +7,8 @@ static const double FRAME_WORK = 40;
 double study_progress_frame(helio_strategy strategy, uint32_t spp)
 {
     helio_strategy resolved = helio_strategy_resolve(strategy);
-    bool is_of_pools = resolved == HELIO_STRATEGY_LIGHT || resolved == HELIO_STRATEGY_FACE;
+    bool is_of_pools =
+        resolved == HELIO_STRATEGY_LIGHT || resolved == HELIO_STRATEGY_FACE || resolved == HELIO_STRATEGY_PRODUCT;
     return FRAME_WORK + (is_of_pools ? 0.2 : 1) * spp;
 }
 

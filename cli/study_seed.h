@@ -5,8 +5,6 @@
 
 #include <stdint.h>
 
-enum { STUDY_SEED_TRUTH = 1 << 24 }; /* indices from here on are those of references */
-
 /* The finaliser of MurmurHash3. */
 static inline uint32_t study_seed(uint32_t seed, uint32_t index)
 {

@@ -72,9 +72,9 @@ static uint32_t base_colour(helio_strategy strategy)
     case HELIO_STRATEGY_FACE_BRDF: return 0xd55e00;
     case HELIO_STRATEGY_LIGHT: return 0x009e73;
     case HELIO_STRATEGY_LIGHT_BRDF: return 0xcc79a7;
-    case HELIO_STRATEGY_PRODUCT: return 0x7a5195;
-    case HELIO_STRATEGY_PRODUCT_BRDF: return 0x000000;
-    case HELIO_STRATEGY_BRDF: return 0xb08a00;
+    case HELIO_STRATEGY_PRODUCT: return 0x332288;
+    case HELIO_STRATEGY_PRODUCT_BRDF: return 0xe69f00;
+    case HELIO_STRATEGY_BRDF: return 0x7f3b08;
     case HELIO_STRATEGY_COSINE: return 0x56b4e9;
     default: return 0x777777;
     }

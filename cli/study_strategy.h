@@ -20,8 +20,8 @@ typedef struct study_strategy {
  * stderr tells what is wrong. */
 int study_strategy_parse(const char *text, const cli_options *options, study_strategy *strategy);
 
-/* Its colour in charts and tables: those of Okabe and Ito, which the colour-blind tell apart, and for what has options
- * of its own a darker one. */
+/* Its colour in charts and tables: those of Okabe and Ito that can be read on white, an indigo and a brown, which the
+ * colour-blind tell apart, and for what has options of its own a darker one. */
 uint32_t study_strategy_colour(const study_strategy *strategy);
 
 #endif

@@ -5,6 +5,8 @@
 #include "json_file.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 /* ---- curves -------------------------------------------------------------------------------- */
 
@@ -112,61 +114,128 @@ double study_curve_at(const study_curve *curve, const double *errors, double slo
     return extend(curve->spp[i], errors[i], between, spp);
 }
 
-/* ---- means --------------------------------------------------------------------------------- */
+/* ---- scores -------------------------------------------------------------------------------- */
 
-typedef struct mean_sums {
-    double relmse, lab, ms, spp, useful, count;
-} mean_sums;
-
-static study_mean mean_of(const mean_sums *sums)
+static study_curve curve_of(const study_record *record, const study_point *point)
 {
-    return (study_mean){exp(sums->relmse / sums->count), sums->lab / sums->count, exp(sums->ms / sums->count),
-                        exp(sums->spp / sums->count), sums->useful / sums->count};
+    return study_curve_make(record, point->environment, point->material, point->strategy);
 }
 
-study_mean study_mean_at_spp(const study_record *record, uint32_t material, uint32_t strategy, uint32_t spp)
+/* The time of pools and shading for so many samples. */
+static double find_budget(const study_record *record, const study_point *point, int terms)
 {
-    mean_sums all = {.count = record->plan->environment_count};
-    for (uint32_t i = 0; i < record->plan->environment_count; i++) {
-        const study_point point = {i, material, strategy, spp};
-        const study_cell *cell = &record->cells[study_plan_index(record->plan, &point)];
-        all.relmse += cell->is_done ? log(cell->relmse) : (double)NAN;
-        all.lab += cell->is_done ? cell->lab_mean : (double)NAN;
-        all.ms += cell->is_done ? log(cell->total_ms) : (double)NAN;
-        all.spp += log(record->plan->spp[spp]);
-        all.useful += cell->is_done ? cell->useful_share : (double)NAN;
-    }
-    return mean_of(&all);
-}
-
-/* The time of pools and shading that the slowest strategy takes for so many samples. */
-static double find_budget(const study_record *record, uint32_t environment, uint32_t material, uint32_t spp)
-{
+    const study_plan *plan = record->plan;
+    study_point other = *point;
     double slowest = 0;
-    for (uint32_t s = 0; s < record->plan->strategy_count; s++) {
+    for (other.strategy = 0; other.strategy < plan->strategy_count; other.strategy++) {
         study_pace pace;
-        const study_curve curve = study_curve_make(record, environment, material, s);
+        const study_curve curve = curve_of(record, &other);
+        if (terms != STUDY_TIME_OF_SLOWEST && terms != (int)other.strategy)
+            continue;
         if (!study_curve_pace(&curve, &pace))
             return (double)NAN;
-        slowest = fmax(slowest, pace.fixed + pace.each * spp);
+        slowest = fmax(slowest, pace.fixed + pace.each * plan->spp[point->spp]);
     }
     return slowest;
 }
 
-study_mean study_mean_at_time(const study_record *record, uint32_t material, uint32_t strategy, uint32_t spp)
+static study_score score_at_time(const study_record *record, const study_point *point, int terms)
 {
-    mean_sums all = {.count = record->plan->environment_count};
-    for (uint32_t i = 0; i < record->plan->environment_count; i++) {
-        study_pace pace = {0};
-        const study_curve curve = study_curve_make(record, i, material, strategy);
-        double budget = find_budget(record, i, material, record->plan->spp[spp]);
-        double samples = study_curve_pace(&curve, &pace) ? (budget - pace.fixed) / pace.each : (double)NAN;
-        all.relmse += log(study_curve_at(&curve, curve.relmse, -1, samples));
-        all.lab += study_curve_at(&curve, curve.lab, -0.5, samples);
-        all.ms += log(find_rest(record, i, material) + budget);
-        all.spp += log(samples);
+    study_pace pace = {0};
+    const study_curve curve = curve_of(record, point);
+    double budget = find_budget(record, point, terms);
+    double samples = study_curve_pace(&curve, &pace) ? (budget - pace.fixed) / pace.each : (double)NAN;
+    return (study_score){.relmse = study_curve_at(&curve, curve.relmse, -1, samples),
+                         .lab = study_curve_at(&curve, curve.lab, -0.5, samples),
+                         .ms = find_rest(record, point->environment, point->material) + budget,
+                         .spp = samples,
+                         .useful = (double)NAN};
+}
+
+study_score study_score_of(const study_record *record, const study_point *point, int terms)
+{
+    const study_cell *cell = &record->cells[study_plan_index(record->plan, point)];
+    if (terms != STUDY_EQUAL_SAMPLES)
+        return score_at_time(record, point, terms);
+    if (!cell->is_done)
+        return (study_score){(double)NAN, (double)NAN, (double)NAN, (double)NAN, (double)NAN};
+    return (study_score){cell->relmse, cell->lab_mean, cell->total_ms, record->plan->spp[point->spp],
+                         cell->useful_share};
+}
+
+study_score study_score_mean(const study_record *record, uint32_t material, uint32_t strategy, uint32_t spp, int terms)
+{
+    study_score sums = {0};
+    study_point each = {.material = material, .strategy = strategy, .spp = spp};
+    double count = record->plan->environment_count;
+    for (each.environment = 0; each.environment < record->plan->environment_count; each.environment++) {
+        const study_score score = study_score_of(record, &each, terms);
+        sums.relmse += log(score.relmse);
+        sums.lab += score.lab;
+        sums.ms += log(score.ms);
+        sums.spp += log(score.spp);
+        sums.useful += score.useful;
     }
-    return mean_of(&all);
+    return (study_score){exp(sums.relmse / count), sums.lab / count, exp(sums.ms / count), exp(sums.spp / count),
+                         sums.useful / count};
+}
+
+int study_terms_of_paper(const study_plan *plan)
+{
+    uint32_t strategy;
+    return study_plan_find(plan, helio_strategy_name(HELIO_STRATEGY_FACE), &strategy) ? (int)strategy : 0;
+}
+
+/* ---- ratios -------------------------------------------------------------------------------- */
+
+typedef struct rivals {
+    helio_strategy strategies[2];
+    uint32_t count;
+} rivals;
+
+static const rivals baselines[STUDY_BASELINES] = {{{HELIO_STRATEGY_FACE, HELIO_STRATEGY_FACE_BRDF}, 2},
+                                                  {{HELIO_STRATEGY_LIGHT_BRDF}, 1}};
+
+bool study_baseline_name(const study_plan *plan, int baseline, char name[STUDY_BASELINE_NAME])
+{
+    uint32_t strategy;
+    name[0] = 0;
+    for (uint32_t i = 0; i < baselines[baseline].count; i++) {
+        const char *word = helio_strategy_name(baselines[baseline].strategies[i]);
+        size_t used = strlen(name);
+        if (study_plan_find(plan, word, &strategy))
+            snprintf(name + used, STUDY_BASELINE_NAME - used, "%s%s", used > 0 ? " or " : "", word);
+    }
+    return name[0] != 0;
+}
+
+/* The least error of those that are compared to. */
+static double baseline_relmse(const study_record *record, int baseline, const study_point *point, int terms)
+{
+    double least = (double)NAN;
+    study_point rival = *point;
+    for (uint32_t i = 0; i < baselines[baseline].count; i++)
+        if (study_plan_find(record->plan, helio_strategy_name(baselines[baseline].strategies[i]), &rival.strategy))
+            least = fmin(least, study_score_of(record, &rival, terms).relmse); /* passes over NaN */
+    return least;
+}
+
+study_ratio study_ratio_mean(const study_record *record, int baseline, const study_point *point, int terms)
+{
+    study_ratio ratio = {.worst = (double)NAN};
+    study_point each = *point;
+    uint32_t count = record->plan->environment_count;
+    for (each.environment = 0; each.environment < count; each.environment++) {
+        double relmse = study_score_of(record, &each, terms).relmse;
+        double part = relmse / baseline_relmse(record, baseline, &each, terms);
+        ratio.mean += log(part) / count;
+        if (isfinite(part) && !(part <= ratio.worst)) {
+            ratio.worst = part;
+            ratio.environment = each.environment;
+        }
+    }
+    ratio.mean = exp(ratio.mean);
+    return ratio;
 }
 
 /* ---- JSON ---------------------------------------------------------------------------------- */
@@ -194,15 +263,22 @@ static json_t *curve_object(const study_record *record, uint32_t environment, ui
     return object;
 }
 
-static json_t *mean_object(const study_record *record, uint32_t material, uint32_t strategy, uint32_t spp)
+/* Names of what a mean over environments is of. */
+static json_t *point_object(const study_plan *plan, const study_point *point)
 {
-    const study_plan *plan = record->plan;
-    study_mean equal_spp = study_mean_at_spp(record, material, strategy, spp);
-    study_mean equal_time = study_mean_at_time(record, material, strategy, spp);
     json_t *object = json_object();
-    json_object_set_new(object, "material", json_string(plan->materials[material].name));
-    json_object_set_new(object, "strategy", json_string(plan->strategies[strategy].name));
-    json_object_set_new(object, "spp", json_whole(plan->spp[spp]));
+    json_object_set_new(object, "material", json_string(plan->materials[point->material].name));
+    json_object_set_new(object, "strategy", json_string(plan->strategies[point->strategy].name));
+    json_object_set_new(object, "spp", json_whole(plan->spp[point->spp]));
+    return object;
+}
+
+static json_t *mean_object(const study_record *record, const study_point *point)
+{
+    study_score equal_spp = study_score_mean(record, point->material, point->strategy, point->spp, STUDY_EQUAL_SAMPLES);
+    study_score equal_time =
+        study_score_mean(record, point->material, point->strategy, point->spp, STUDY_TIME_OF_SLOWEST);
+    json_t *object = point_object(record->plan, point);
     json_object_set_new(object, "relmse", json_number(equal_spp.relmse));
     json_object_set_new(object, "lab_mean", json_number(equal_spp.lab));
     json_object_set_new(object, "total_ms", json_number(equal_spp.ms));
@@ -214,17 +290,48 @@ static json_t *mean_object(const study_record *record, uint32_t material, uint32
     return object;
 }
 
+static json_t *ratio_object(const study_record *record, int baseline, const study_point *point, int terms)
+{
+    const study_plan *plan = record->plan;
+    const study_ratio ratio = study_ratio_mean(record, baseline, point, terms);
+    char name[STUDY_BASELINE_NAME];
+    json_t *object = point_object(plan, point);
+    study_baseline_name(plan, baseline, name);
+    json_object_set_new(object, "against", json_string(name));
+    json_object_set_new(object, "time_of", terms < 0 ? json_null() : json_string(plan->strategies[terms].name));
+    json_object_set_new(object, "mean", json_number(ratio.mean));
+    json_object_set_new(object, "worst", json_number(ratio.worst));
+    json_object_set_new(object, "worst_environment",
+                        isnan(ratio.worst) ? json_null() : json_string(plan->environments[ratio.environment].name));
+    return object;
+}
+
+/* For the samples that are shown, against all that there are: at equal samples and at equal time. */
+static void add_ratios(const study_record *record, const study_point *point, json_t *list)
+{
+    char name[STUDY_BASELINE_NAME];
+    for (int i = 0; i < STUDY_BASELINES && record->plan->is_shown[point->spp]; i++) {
+        if (!study_baseline_name(record->plan, i, name))
+            continue;
+        json_array_append_new(list, ratio_object(record, i, point, STUDY_EQUAL_SAMPLES));
+        json_array_append_new(list, ratio_object(record, i, point, study_terms_of_paper(record->plan)));
+    }
+}
+
 void study_summary_describe(const study_record *record, json_t *object)
 {
     const study_plan *plan = record->plan;
-    json_t *curves = json_array(), *means = json_array();
+    json_t *curves = json_array(), *means = json_array(), *ratios = json_array();
     for (size_t i = 0; i < study_plan_count(plan); i++) {
         study_point point = study_plan_point(plan, i);
         if (point.spp == 0)
             json_array_append_new(curves, curve_object(record, point.environment, point.material, point.strategy));
-        if (point.environment == 0)
-            json_array_append_new(means, mean_object(record, point.material, point.strategy, point.spp));
+        if (point.environment != 0)
+            continue;
+        json_array_append_new(means, mean_object(record, &point));
+        add_ratios(record, &point, ratios);
     }
     json_object_set_new(object, "curves", curves);
     json_object_set_new(object, "means", means);
+    json_object_set_new(object, "ratios", ratios);
 }

@@ -36,23 +36,49 @@ bool study_curve_pace(const study_curve *curve, study_pace *pace);
  * elsewhere. errors: [count], of the curve. */
 double study_curve_at(const study_curve *curve, const double *errors, double slope, double spp);
 
-/* ---- means over environments ----------------------------------------------------------------------------------- */
+/* ---- scores ---------------------------------------------------------------------------------------------------- */
 
-/* NaN where an environment has no such number. */
-typedef struct study_mean {
-    double relmse; /* geometric mean */
-    double lab;    /* mean */
-    double ms;     /* geometric mean, of the whole frame */
-    double spp;    /* geometric mean */
-    double useful; /* mean share; 0 at equal time */
-} study_mean;
+/* What strategies are compared at: the same number of samples, or the time that the slowest of them takes for it, or
+ * from 0 on that of the strategy with this number in the plan. */
+enum { STUDY_EQUAL_SAMPLES = -1, STUDY_TIME_OF_SLOWEST = -2 };
 
-study_mean study_mean_at_spp(const study_record *record, uint32_t material, uint32_t strategy, uint32_t spp);
+/* The time of face, the paper's strategy; without it that of the first one. */
+int study_terms_of_paper(const study_plan *plan);
 
-/* In each environment with as many samples as fit into the time that the slowest strategy takes for so many. */
-study_mean study_mean_at_time(const study_record *record, uint32_t material, uint32_t strategy, uint32_t spp);
+/* What a strategy comes to. NaN where there is no such number. */
+typedef struct study_score {
+    double relmse, lab, ms; /* ms: of the whole frame */
+    double spp;             /* how many samples those terms let it have */
+    double useful;          /* share; only at equal samples */
+} study_score;
 
-/* Adds "curves" and "means" to the study's JSON. */
+study_score study_score_of(const study_record *record, const study_point *point, int terms);
+
+/* Means over all environments: geometric ones but for lab and useful. */
+study_score study_score_mean(const study_record *record, uint32_t material, uint32_t strategy, uint32_t spp, int terms);
+
+/* ---- ratios ---------------------------------------------------------------------------------------------------- */
+
+/* What strategies are held against: the better of face and face+brdf in each environment, and light+brdf, which is what
+ * most renderers do. */
+enum { STUDY_BASELINES = 2, STUDY_BASELINE_NAME = 64 };
+
+/* "face or face+brdf", as far as they are in the plan, without options of their own. False: none is. */
+bool study_baseline_name(const study_plan *plan, int baseline, char name[STUDY_BASELINE_NAME]);
+
+/* A strategy's relMSE as a part of the baseline's. */
+typedef struct study_ratio {
+    double mean;          /* geometric, over all environments; NaN where one has no such number */
+    double worst;         /* the greatest that there is; NaN: there is none */
+    uint32_t environment; /* that has it */
+} study_ratio;
+
+/* Of all environments, whichever the point names. */
+study_ratio study_ratio_mean(const study_record *record, int baseline, const study_point *point, int terms);
+
+/* ---- JSON ------------------------------------------------------------------------------------------------------ */
+
+/* Adds "curves", "means" and "ratios" to the study's JSON. */
 void study_summary_describe(const study_record *record, json_t *object);
 
 #endif

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #include "study_truth.h"
 
-#include "study_seed.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { PASSES = 16 }; /* independent pictures, whose spread tells the standard error of their mean */
+/* PIECES: independent pictures, whose spread tells the standard error of their mean. */
+enum { PIECES = 16, MOST_AA = 4096 };
+
+static const double QUADRATURE_WORK = 60000; /* in samples of study_progress, of each pixel; very roughly */
 
 static size_t pixels_of(const study_truth *truth)
 {
@@ -44,80 +45,79 @@ static void find_rmse(study_truth *truth)
 
 /* ---- rendering ----------------------------------------------------------------------------- */
 
-/* Of each channel: the mean so far, and the sum of squared differences from it (Welford). */
-typedef struct moments {
-    double *mean, *squares;
-} moments;
-
-static void add_pass(moments *sums, const float *rgba, size_t pixels, uint32_t pass)
+static uint32_t piece_spp(uint32_t spp)
 {
-    for (size_t i = 0; i < 3 * pixels; i++) {
-        double value = (double)rgba[4 * (i / 3) + i % 3], change = value - sums->mean[i];
-        sums->mean[i] += change / (pass + 1);
-        sums->squares[i] += change * (value - sums->mean[i]);
-    }
+    return (spp + PIECES - 1) / PIECES;
 }
 
-static void finish(study_truth *truth, const moments *sums, const float *object)
+/* One camera sample has no noise; several, which are at random, have less than those of what is compared. */
+static uint32_t quadrature_aa(uint32_t aa)
 {
-    for (size_t i = 0; i < 3 * pixels_of(truth); i++) {
-        truth->rgb[i] = (float)sums->mean[i];
-        truth->error[i] = (float)sqrt(sums->squares[i] / (PASSES * (PASSES - 1)));
-    }
-    memcpy(truth->object, object, pixels_of(truth) * sizeof *object);
-    find_rmse(truth);
+    return aa == 1 ? 1 : aa < MOST_AA / PIECES ? PIECES * aa : MOST_AA;
 }
 
-static uint32_t pass_spp(const study_truth_desc *desc)
+/* As study_progress counts it, each of a pixel's aa camera samples is one frame's. */
+double study_truth_work(const study_truth_desc *desc)
 {
-    return (desc->spp + PASSES - 1) / PASSES;
+    uint32_t aa = desc->renderer.aa;
+    return desc->is_quadrature ? QUADRATURE_WORK * quadrature_aa(aa) / aa
+                               : PIECES * study_progress_frame(HELIO_STRATEGY_FACE_BRDF, piece_spp(desc->spp));
 }
 
-double study_truth_work(uint32_t spp)
+static helio_status create(helio_context *context, const study_truth_desc *desc, helio_reference **reference)
 {
-    const study_truth_desc desc = {.spp = spp};
-    return PASSES * study_progress_frame(HELIO_STRATEGY_AUTO, pass_spp(&desc));
+    helio_reference_desc made = {.renderer = desc->renderer,
+                                 .camera = desc->camera,
+                                 .method = desc->is_quadrature ? HELIO_REFERENCE_QUADRATURE : HELIO_REFERENCE_SAMPLING,
+                                 .seed = desc->seed};
+    made.renderer.strategy = HELIO_STRATEGY_FACE_BRDF;
+    made.renderer.spp = piece_spp(desc->spp) * made.renderer.aa; /* references count samples of a pixel */
+    if (desc->is_quadrature)
+        made.renderer.aa = quadrature_aa(made.renderer.aa);
+    return helio_reference_create(context, &made, reference);
 }
 
-static helio_status render_passes(helio_renderer *renderer, const study_truth_desc *desc, study_truth *truth,
-                                  moments *sums, bool *is_whole)
+/* Pieces of quadrature are bands of the picture. */
+static helio_status advance(helio_reference *reference, const study_truth_desc *desc, bool *is_whole)
 {
-    helio_frame_desc frame = {.camera = desc->camera, .progress = study_progress_update, .user = desc->progress};
-    helio_frame_info info = {0};
+    helio_reference_info info = helio_reference_get_info(reference);
+    uint64_t count = desc->is_quadrature ? info.piece_count : PIECES;
     helio_status status = HELIO_OK;
-    for (uint32_t pass = 0; pass < PASSES && status == HELIO_OK && !info.stopped; pass++) {
-        study_progress_begin(desc->progress, study_progress_frame(HELIO_STRATEGY_AUTO, pass_spp(desc)));
-        frame.seed = study_seed(desc->seed, STUDY_SEED_TRUTH + pass);
-        status = helio_renderer_render(renderer, &frame, &info);
-        if (status == HELIO_OK && !info.stopped)
-            add_pass(sums, helio_renderer_picture(renderer).rgba, pixels_of(truth), pass);
+    while (status == HELIO_OK && !info.stopped && info.pieces < count) {
+        study_progress_begin(desc->progress, study_truth_work(desc) / (double)count);
+        status = helio_reference_advance(reference, study_progress_update, desc->progress, &info);
         study_progress_end(desc->progress);
     }
     *is_whole = status == HELIO_OK && !info.stopped;
-    if (*is_whole)
-        finish(truth, sums, helio_renderer_picture(renderer).object);
     return status;
+}
+
+static void take_picture(study_truth *truth, const helio_picture *picture)
+{
+    size_t pixels = pixels_of(truth);
+    for (size_t i = 0; i < 3 * pixels; i++)
+        truth->rgb[i] = picture->rgba[4 * (i / 3) + i % 3];
+    memcpy(truth->object, picture->object, pixels * sizeof *truth->object);
+    if (picture->standard_error != NULL)
+        memcpy(truth->error, picture->standard_error, 3 * pixels * sizeof *truth->error);
+    find_rmse(truth);
 }
 
 helio_status study_truth_make(helio_context *context, const study_truth_desc *desc, study_truth *truth, bool *is_whole)
 {
-    helio_renderer_desc renderer_desc = desc->renderer;
-    helio_renderer *renderer = NULL;
-    const uint32_t size[2] = {renderer_desc.width, renderer_desc.height};
+    const uint32_t size[2] = {desc->renderer.width, desc->renderer.height};
+    helio_reference *reference = NULL;
     *is_whole = false;
     if (!take_memory(truth, size))
         return HELIO_ERR_MEMORY;
-    moments sums = {calloc(3 * pixels_of(truth), sizeof(double)), calloc(3 * pixels_of(truth), sizeof(double))};
-    helio_status status = sums.mean != NULL && sums.squares != NULL ? HELIO_OK : HELIO_ERR_MEMORY;
-    renderer_desc.spp = pass_spp(desc);
-    renderer_desc.strategy = HELIO_STRATEGY_AUTO;
+    helio_status status = create(context, desc, &reference);
     if (status == HELIO_OK)
-        status = helio_renderer_create(context, &renderer_desc, &renderer);
-    if (status == HELIO_OK)
-        status = render_passes(renderer, desc, truth, &sums, is_whole);
-    helio_renderer_destroy(renderer);
-    free(sums.mean);
-    free(sums.squares);
+        status = advance(reference, desc, is_whole);
+    if (*is_whole) {
+        const helio_picture picture = helio_reference_picture(reference);
+        take_picture(truth, &picture);
+    }
+    helio_reference_destroy(reference);
     return status;
 }
 

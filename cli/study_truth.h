@@ -18,14 +18,15 @@ typedef struct study_truth {
 typedef struct study_truth_desc {
     helio_renderer_desc renderer; /* of what is compared; spp and strategy do not count */
     helio_camera camera;
-    uint32_t spp, seed;
+    bool is_quadrature; /* the light of all texels, without noise and without shadows */
+    uint32_t spp;       /* else so many samples per shading point, as study counts them */
+    uint32_t seed;
     study_progress *progress;
 } study_truth_desc;
 
-/* Renders it with the light that the environment has. *is_whole is false where a signal came. Release it in any case.
- */
+/* Makes it with the light that the environment has. *is_whole is false where a signal came. Release it in any case. */
 helio_status study_truth_make(helio_context *context, const study_truth_desc *desc, study_truth *truth, bool *is_whole);
-double study_truth_work(uint32_t spp); /* for study_progress */
+double study_truth_work(const study_truth_desc *desc); /* for study_progress */
 void study_truth_release(study_truth *truth);
 
 /* From and to OpenEXR, float by float. false: there is no such file of this size. */

@@ -23,7 +23,7 @@ set(PROGRAM_SOURCES
     cli/progress.c cli/render_plan.c cli/samples_gather.c cli/samples_json.c cli/samples_pixel.c cli/samples_plan.c
     cli/samples_words.c cli/stats.c cli/suggestion.c
     cli/canvas_svg.c cli/chart.c cli/command_study.c cli/data_uri.c cli/digest.c cli/false_colour.c cli/study_charts.c
-    cli/study_csv.c cli/study_file.c cli/study_job.c cli/study_light.c cli/study_list.c cli/study_measure.c
+    cli/study_csv.c cli/study_file.c cli/study_job.c cli/study_light.c cli/study_list.c cli/study_markdown.c cli/study_measure.c
     cli/study_page.c cli/study_picture.c cli/study_plan.c cli/study_progress.c cli/study_record.c cli/study_settings.c
     cli/study_strategy.c cli/study_summary.c cli/study_truth.c)
 

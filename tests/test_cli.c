@@ -293,13 +293,11 @@ static void test_failures_exit_1_and_leave_nothing(void **state)
 {
     (void)state;
     skip_without(NEEDS_PNG);
-    write_text("bad.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100 +X 200\n");
     write_text("bad.obj", "this is no mesh\n");
     write_text("folder.txt", "");
     assert_int_equal(mkdir("folder.png", 0777), 0);
     size_t before = count_files(".");
     fails(SMALL "--env missing.hdr --out a.png", 1, "missing.hdr");
-    fails(SMALL "--env bad.hdr --out a.png", 1, "bad.hdr");
     fails(SMALL "--env . --out a.png", 1, ".");
     fails(SMALL "--mesh missing.obj --out a.png", 1, "missing.obj");
     fails(SMALL "--mesh bad.obj --out a.png", 1, "bad.obj");
@@ -313,6 +311,17 @@ static void test_failures_exit_1_and_leave_nothing(void **state)
     fails("render --env map.pfm --mesh tetrahedron.obj --out ./map.pfm", 1, "replace an input");
     fails(SMALL "--out a.png --stats tetrahedron.obj", 1, "replace an input");
     assert_int_equal(count_files("."), before + 1);
+}
+
+/* Pixels are read when there is something to light by them. */
+static void test_damaged_maps_exit_1_and_leave_nothing(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER | NEEDS_PNG);
+    write_text("bad.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100 +X 200\n");
+    size_t before = count_files(".");
+    fails(SMALL "--env bad.hdr --out a.png", 1, "bad.hdr");
+    assert_int_equal(count_files("."), before);
 }
 
 static void test_options_without_effect_are_told(void **state)
@@ -729,6 +738,7 @@ int main(void)
         program_test(test_bad_command_lines_are_refused_in_one_sentence),
         program_test(test_usage_errors_come_before_files),
         program_test(test_failures_exit_1_and_leave_nothing),
+        program_test(test_damaged_maps_exit_1_and_leave_nothing),
         program_test(test_options_without_effect_are_told),
         program_test(test_missing_assets_are_explained),
         program_test(test_limits_name_their_option),

@@ -7,6 +7,8 @@
 #include "core/error.h"
 #include "scene/mesh_process.h"
 
+#include <heliostat/source.h>
+
 #include <fcntl.h>
 #include <math.h>
 #include <pthread.h>
@@ -369,6 +371,42 @@ static void limits_of_the_host_are_kept(void **state)
     assert_ok(status);
 }
 
+static void small_files_of_the_host_are_told(void **state)
+{
+    (void)state;
+    struct rlimit before;
+    getrlimit(RLIMIT_FSIZE, &before);
+    const struct rlimit files = {100, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &files);
+    helio_mesh *mesh;
+    helio_status status = load(import_square, &LIMITS, &mesh);
+    setrlimit(RLIMIT_FSIZE, &before);
+    assert_int_equal(status, HELIO_ERR_IO);
+    assert_non_null(strstr(helio_last_error(), "some.ply is not read"));
+    assert_non_null(strstr(helio_last_error(), "no file of more than 100 bytes"));
+    expect_square();
+}
+
+/* Of 3 MiB. With address sanitizer there is memory for it, but no file. */
+static helio_status import_large(helio_context *own, const char *path, const mesh_import_options *options,
+                                 mesh_arrays *arrays)
+{
+    (void)path, (void)options;
+    *arrays = (mesh_arrays){.vertex_count = 1 << 18};
+    arrays->positions = context_allocate(own, arrays->vertex_count, 12);
+    return arrays->positions != NULL ? HELIO_OK : HELIO_ERR_MEMORY;
+}
+
+/* The limit of files is that of memory where the host has no lower one. */
+static void large_meshes_are_a_matter_of_memory(void **state)
+{
+    (void)state;
+    mesh_limits limits = LIMITS;
+    limits.memory = MIB;
+    expect_sentence(import_large, &limits, HELIO_ERR_MEMORY,
+                    "some.ply needs more than the 1 MiB of memory allowed for reading it");
+}
+
 static void memory_is_limited(void **state)
 {
     (void)state;
@@ -647,6 +685,90 @@ static void threads_load_at_the_same_time(void **state)
     assert_int_equal(atomic_load(&failures), 0);
 }
 
+/* More than what a thread has at hand, so that all sizes are taken from what threads share. */
+static void take_memory(void)
+{
+    enum { BLOCKS = 1000 };
+    void *blocks[BLOCKS];
+    for (size_t i = 0; i < BLOCKS; i++)
+        blocks[i] = malloc(1 + i * 37 % 5000);
+    for (size_t i = 0; i < BLOCKS; i++)
+        free(blocks[i]);
+}
+
+static helio_status import_with_much_memory(helio_context *own, const char *path, const mesh_import_options *options,
+                                            mesh_arrays *arrays)
+{
+    take_memory();
+    return import_square(own, path, options, arrays);
+}
+
+/* Of the thread that reads frames: within the allocator nearly all the time. */
+static void *allocate_busily(void *user, size_t bytes, size_t alignment)
+{
+    (void)user;
+    take_memory();
+    return aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+}
+
+static void release(void *user, void *memory)
+{
+    (void)user;
+    free(memory);
+}
+
+enum { FRAMES = 24 };
+
+static void write_frames(const char *pattern)
+{
+    char path[128];
+    for (int i = 0; i < FRAMES; i++) {
+        snprintf(path, sizeof path, pattern, (long)getpid(), i);
+        FILE *file = fopen(path, "w");
+        fputs("PF\n2 1\n-1\n                        ", file); /* all bytes are blanks: 1.4e-19 */
+        fclose(file);
+    }
+}
+
+static void remove_frames(const char *pattern)
+{
+    char path[128];
+    for (int i = 0; i < FRAMES; i++) {
+        snprintf(path, sizeof path, pattern, (long)getpid(), i);
+        unlink(path);
+    }
+}
+
+/* The lock that a thread holds while a process is made stays locked in that process: see fork_gate.h. */
+static void meshes_are_read_while_frames_are(void **state)
+{
+    (void)state;
+    static const char paths[] = "/tmp/heliostat-hostile-%ld-%02d.pfm";
+    char pattern[128];
+    const helio_context_desc desc = {.threads = 1, .allocate = allocate_busily, .release = release};
+    const mesh_limits limits = {.memory = 256 * MIB, .seconds = 60, .texture_seconds = 60, .clock_seconds = 20};
+    helio_context *before = context;
+    helio_source *source;
+    helio_source_frame frame;
+    helio_status status = HELIO_OK;
+    snprintf(pattern, sizeof pattern, "/tmp/heliostat-hostile-%ld-%%02d.pfm", (long)getpid());
+    write_frames(paths);
+    assert_ok(helio_context_create(&desc, &context));
+    assert_ok(helio_source_open(context, pattern, NULL, &source));
+    for (int i = 0; i < FRAMES && status == HELIO_OK; i++) {
+        helio_mesh *mesh = NULL;
+        status = helio_source_next(source, &frame);
+        if (status == HELIO_OK)
+            status = load(import_with_much_memory, &limits, &mesh);
+        helio_mesh_destroy(context, mesh);
+    }
+    helio_source_close(source);
+    helio_context_destroy(context);
+    context = before;
+    remove_frames(paths);
+    assert_ok(status);
+}
+
 #else
 
 static void hostile_meshes_need_assimp(void **state)
@@ -671,6 +793,8 @@ int main(void)
         TEST(time_is_limited),
         TEST(last_words_of_a_child_are_heard),
         TEST(limits_of_the_host_are_kept),
+        TEST(small_files_of_the_host_are_told),
+        TEST(large_meshes_are_a_matter_of_memory),
         TEST(memory_is_limited),
         TEST(texts_hold_no_control_characters),
         TEST(a_flood_of_messages_is_cut_off),
@@ -682,6 +806,7 @@ int main(void)
         TEST(no_process_is_told),
         TEST(no_memory_is_told_and_nothing_leaks),
         TEST(threads_load_at_the_same_time),
+        TEST(meshes_are_read_while_frames_are),
 #else
         cmocka_unit_test(hostile_meshes_need_assimp),
 #endif

@@ -34,7 +34,7 @@ static void write_map(const char *path)
 }
 
 #define SCENE "study --mesh tetrahedron.obj --size 64x36 --env-size 16 --envs map.pfm --threads 2 "
-#define SMALL SCENE "--spp 4,16,64 --strategies face,face+brdf,light,light+brdf,brdf,cosine --reference-spp 8192 "
+#define SMALL SCENE "--spp 4,16,64 --reference-spp 8192 " /* of all strategies */
 
 static json_t *run_study(const char *words)
 {
@@ -202,7 +202,7 @@ static void errors_fall_as_they_must(void **state)
     json_t *study = run_study(SMALL "--out s --materials diffuse:0.8;phong:kd=0.5,ks=0.5,n=20");
     size_t index;
     const json_t *curve;
-    assert_int_equal(json_array_size(member(study, "cells")), 2 * 6 * 3);
+    assert_int_equal(json_array_size(member(study, "cells")), 2 * 8 * 3);
     json_array_foreach(member(study, "curves"), index, curve)
     {
         double slope = number_of(curve, "slope");
@@ -263,6 +263,64 @@ static void files_say_the_same(void **state)
 #ifdef HELIO_WITH_CAIRO
     assert_int_equal(count_files("s/curves"), 4);
 #endif
+    json_decref(study);
+}
+
+/* Cells of two environments, three strategies and two numbers of samples, of which the second one is shown. */
+static double relmse_of(const json_t *study, size_t environment, size_t strategy)
+{
+    return number_of(cell_at(study, (environment * 3 + strategy) * 2 + 1), "relmse");
+}
+
+static const json_t *ratio_at(const json_t *study, size_t strategy, size_t place, const char *against)
+{
+    const json_t *ratio = json_array_get(member(study, "ratios"), 4 * strategy + place);
+    assert_non_null(ratio);
+    assert_string_equal(text_of(ratio, "against"), against);
+    assert_true(number_of(ratio, "spp") == 16);
+    return ratio;
+}
+
+/* Files have nine digits. */
+static bool is_near(double value, double expected)
+{
+    return fabs(value / expected - 1) < 1e-6;
+}
+
+static void compare_ratio(const json_t *study, const char *tables, size_t strategy)
+{
+    static const char *const names[] = {"map", "constant:1,0.5,0.25"};
+    const json_t *ratio = ratio_at(study, strategy, 0, "face");
+    double parts[2];
+    char cell[128];
+    for (size_t i = 0; i < 2; i++)
+        parts[i] = relmse_of(study, i, strategy) / relmse_of(study, i, 0);
+    assert_true(is_near(number_of(ratio, "mean"), sqrt(parts[0] * parts[1])));
+    assert_true(is_near(number_of(ratio, "worst"), fmax(parts[0], parts[1])));
+    assert_string_equal(text_of(ratio, "worst_environment"), names[parts[1] > parts[0]]);
+    snprintf(cell, sizeof cell, "| `%s` | %.3g (%.3g, %s) |", text_of(ratio, "strategy"), number_of(ratio, "mean"),
+             number_of(ratio, "worst"), text_of(ratio, "worst_environment"));
+    if (strstr(tables, cell) == NULL)
+        fail_msg("the tables have no cell %s", cell);
+}
+
+static void holds_strategies_against_others(void **state)
+{
+    static char tables[1 << 14];
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+    write_map("map.pfm");
+    json_t *study = run_study(SCENE "--spp 4,16 --show-spp 16 --strategies face,light+brdf,product --reference-spp 256 "
+                                    "--out s --envs map.pfm;constant:1,0.5,0.25");
+    read_text("s/study.md", tables, sizeof tables);
+    assert_int_equal(json_array_size(member(study, "ratios")), 3 * 4);
+    compare_ratio(study, tables, 1);
+    compare_ratio(study, tables, 2);
+    /* In the time of face it has the samples that it has, and no strategy is better or worse than itself. */
+    assert_string_equal(text_of(ratio_at(study, 0, 1, "face"), "time_of"), "face");
+    assert_true(is_near(number_of(ratio_at(study, 0, 1, "face"), "mean"), 1));
+    assert_true(is_near(number_of(ratio_at(study, 1, 2, "light+brdf"), "mean"), 1));
+    assert_non_null(strstr(tables, " (16) |\n| `light+brdf` |"));
     json_decref(study);
 }
 
@@ -403,6 +461,33 @@ static void finds_environments(void **state)
     json_decref(study);
 }
 
+#define TRUTH SCENE "--size 32x18 --spp 16 --strategies face --repeat 1 --materials diffuse:0.8 "
+
+/* Two references differ, as RMSE, by about the root of the sum of their squared standard errors; and errors against
+ * them by no more than they do. Twice that leaves room for the chance that samples are. */
+static void takes_quadrature_for_the_truth(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+    write_map("map.pfm");
+    static const char *const aa[] = {"1", "2"};
+    for (int i = 0; i < 2; i++) {
+        char words[512];
+        snprintf(words, sizeof words, TRUTH "--aa %s --reference-method quadrature --out a%s", aa[i], aa[i]);
+        json_t *exact = run_study(words);
+        snprintf(words, sizeof words, TRUTH "--aa %s --reference-spp 16384 --out b%s", aa[i], aa[i]);
+        json_t *noisy = run_study(words);
+        double bound = number_of(cell_at(exact, 0), "reference_rmse");
+        double noise = number_of(cell_at(noisy, 0), "reference_rmse");
+        double error = number_of(cell_at(exact, 0), "rmse");
+        assert_true(noise < error / 5 && bound < (i == 0 ? noise / 100 : error / 5));
+        assert_true(fabs(error - number_of(cell_at(noisy, 0), "rmse")) < 2 * hypot(bound, noise));
+        json_decref(exact);
+        json_decref(noisy);
+    }
+    fails(TRUTH "--reference-spp 16384 --out a1 --resume", 1, "reference-method");
+}
+
 static void refuses_what_makes_no_study(void **state)
 {
     (void)state;
@@ -416,6 +501,7 @@ static void refuses_what_makes_no_study(void **state)
     fails(SCENE "--spp 4,16 --show-spp 8", 2, "--show-spp");
     fails(SCENE "--materials gold", 2, "materials");
     fails(SCENE "--ground shadow", 2, "--ground");
+    fails(SCENE "--reference-method quadrature --visibility ray", 2, "--visibility none");
     fails(SCENE "--envs ,", 2, "--envs");
     fails("study --envs none/*.exr", 1, "none/*.exr");
     fails(SCENE "word", 2, "word");
@@ -425,11 +511,18 @@ static void refuses_what_makes_no_study(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        program_test(errors_fall_as_they_must),  program_test(times_count_everything),
-        program_test(files_say_the_same),        program_test(goes_on_where_it_was_killed),
-        program_test(stops_when_asked),          program_test(tells_studies_apart),
-        program_test(takes_options_from_a_file), program_test(finds_environments),
-        program_test(gives_strategies_options),  program_test(refuses_what_makes_no_study),
+        program_test(errors_fall_as_they_must),
+        program_test(times_count_everything),
+        program_test(files_say_the_same),
+        program_test(goes_on_where_it_was_killed),
+        program_test(stops_when_asked),
+        program_test(tells_studies_apart),
+        program_test(takes_options_from_a_file),
+        program_test(finds_environments),
+        program_test(gives_strategies_options),
+        program_test(takes_quadrature_for_the_truth),
+        program_test(holds_strategies_against_others),
+        program_test(refuses_what_makes_no_study),
     };
     return cmocka_run_group_tests_name("study", tests, set_up_program, tear_down_program);
 }

@@ -57,12 +57,21 @@ static const unsigned char *find_last_pixel(const resampler *plan, const map_pix
     return numbers > 3 ? NULL : map_pixels_at(pixels, pixels->row_bytes > 0 ? plan->height - 1 : 0, plan->width - 1);
 }
 
+/* Past the caches, if they would hold little of the cube when it is read: lines that are about to be overwritten are
+ * not fetched then, which is a third of what there is to move. */
+static bool is_large(const resampler *plan)
+{
+    const size_t caches = (size_t)8 << 20;
+    return (size_t)CUBE_FACES * plan->size * plan->size * 3 * sizeof(float) > caches;
+}
+
 bool resampler_run(helio_context *context, resampler *plan, const map_pixels *pixels, float *cube)
 {
     frame_work work = {.resampling = {.plan = plan, .pixels = *pixels, .cube = cube},
                        .kernels = kernels_of(context_isa(context)),
                        .spaces = plan->spaces};
     work.resampling.last_pixel = find_last_pixel(plan, pixels);
+    work.resampling.streams = is_large(plan);
     for (int i = 0; i < plan->group_count; i++)
         find_origins(&work.resampling, i);
     context_parallel_for(context, plan->space_count, resample_tiles, &work);

@@ -3,6 +3,7 @@
 
 #include "core/clock.h"
 #include "core/context.h"
+#include "core/fork_gate.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -63,7 +64,9 @@ static void *read_frames(void *argument)
     bool is_last = false;
     for (uint64_t number = 0; !is_last && wait_for_room(queue); number++) {
         source_slot *slot = &queue->slots[number % queue->slot_count];
+        fork_gate_enter();
         fill_slot(queue, slot);
+        fork_gate_leave();
         is_last = slot->status != HELIO_OK || source_slot_is_end(slot);
         pthread_mutex_lock(&queue->mutex);
         queue->filled++;

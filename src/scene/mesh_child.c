@@ -2,6 +2,7 @@
 #include "scene/mesh_child.h"
 
 #include "core/error.h"
+#include "core/sanitized.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -13,16 +14,6 @@
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
-
-#ifndef __has_feature
-#define __has_feature(name) 0
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || __has_feature(address_sanitizer) ||               \
-    __has_feature(thread_sanitizer)
-enum { SANITIZED = true };
-#else
-enum { SANITIZED = false };
-#endif
 
 const bool mesh_process_limits_memory = !SANITIZED;
 
@@ -166,6 +157,21 @@ static void send_log(void *user, helio_log_level level, const char *message)
 
 /* ---- the work -------------------------------------------------------------------------- */
 
+/* A file that is too large for what max_memory allows is a matter of memory, and else one of a limit of the host. */
+static helio_status hand_on(const mesh_child *child, helio_context *context, mesh_arrays *arrays)
+{
+    struct rlimit files;
+    helio_status status = mesh_receipt_write(context, child->memory, arrays);
+    if (status != HELIO_ERR_IO || getrlimit(RLIMIT_FSIZE, &files) != 0)
+        return status;
+    if (files.rlim_cur >= child->limits->memory)
+        return HELIO_ERR_MEMORY;
+    return fail(HELIO_ERR_IO,
+                "%s is not read, as this process may write no file of more than %" PRIu64 " bytes, and its mesh needs "
+                "one in memory; raise that limit (ulimit -f), or set in_process for a file that you trust",
+                child->path, (uint64_t)files.rlim_cur);
+}
+
 static helio_status import(const mesh_child *child)
 {
     helio_context_desc desc = {
@@ -177,7 +183,7 @@ static helio_status import(const mesh_child *child)
     HELIO_TRY(set_limits(child));
     HELIO_TRY(helio_context_create(&desc, &context));
     HELIO_TRY(child->import(context, child->path, &options, &arrays));
-    return mesh_receipt_write(context, child->memory, &arrays);
+    return hand_on(child, context, &arrays);
 }
 
 void mesh_child_run(const mesh_child *child)

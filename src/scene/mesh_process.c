@@ -4,6 +4,7 @@
 #include "core/clock.h"
 #include "core/context.h"
 #include "core/error.h"
+#include "core/fork_gate.h"
 #include "scene/mesh_child.h"
 
 #include <errno.h>
@@ -92,10 +93,12 @@ static pid_t fork_child(const mesh_child *child)
     sigfillset(&all);
     pthread_mutex_lock(&import_mutex);
     pthread_sigmask(SIG_SETMASK, &all, &before);
+    fork_gate_close();
     pid_t pid = fork();
     if (pid == 0)
         mesh_child_run(child);
     int error = errno;
+    fork_gate_open();
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     pthread_mutex_unlock(&import_mutex);
     errno = error;

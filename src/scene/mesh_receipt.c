@@ -32,7 +32,8 @@ static helio_status write_bytes(int descriptor, const void *bytes, size_t size)
         if (written < 0 && errno == EINTR)
             continue;
         if (written <= 0)
-            return fail(HELIO_ERR_MEMORY, "the mesh cannot be handed on: %s", strerror(errno));
+            return fail(errno == EFBIG ? HELIO_ERR_IO : HELIO_ERR_MEMORY, "the mesh cannot be handed on: %s",
+                        strerror(errno));
         at += written;
         size -= (size_t)written;
     }

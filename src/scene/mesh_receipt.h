@@ -5,7 +5,8 @@
 
 #include "scene/mesh.h"
 
-/* Writes the arrays to a file descriptor and releases each as soon as it is written. */
+/* Writes the arrays to a file descriptor and releases each as soon as it is written. HELIO_ERR_IO where they make a
+ * larger file than this process may write, HELIO_ERR_MEMORY where there is no room for it. */
 helio_status mesh_receipt_write(helio_context *context, int descriptor, mesh_arrays *arrays);
 
 /* What was received. The arrays of desc lie in the shared memory. */
