@@ -28,6 +28,7 @@ static int parse_words(render_plan *plan)
     const cli_options *options = plan->options;
     if (helio_strategy_parse(options->strategy, &plan->strategy) != HELIO_OK ||
         helio_weighting_parse(options->weighting, &plan->weighting) != HELIO_OK ||
+        helio_strategy_check_weighting(plan->strategy, plan->weighting) != HELIO_OK ||
         helio_ground_parse(options->ground, &plan->ground) != HELIO_OK ||
         helio_tonemap_parse(options->tonemap, &plan->tonemap) != HELIO_OK)
         return message_usage("%s", helio_last_error());

@@ -62,6 +62,8 @@ int study_strategy_parse(const char *text, const cli_options *options, study_str
         if (code != EXIT_CODE_OK)
             return code;
     }
+    if (helio_strategy_check_weighting(strategy->strategy, strategy->weighting) != HELIO_OK)
+        return message_usage("--strategies: %s", helio_last_error());
     return EXIT_CODE_OK;
 }
 

@@ -98,6 +98,10 @@ HELIO_API helio_status helio_strategy_parse(const char *name, helio_strategy *st
 /* What AUTO stands for in this version, even light apart; any other strategy is returned as it is. */
 HELIO_API helio_strategy helio_strategy_resolve(helio_strategy strategy);
 
+/* HELIO_ERR_ARGUMENT if a strategy cannot use tables of this weighting: compensated ones leave light out, to which only
+ * LIGHT_BRDF and FACE_BRDF send BRDF samples everywhere. Strategies without light samples use no tables. */
+HELIO_API helio_status helio_strategy_check_weighting(helio_strategy strategy, helio_weighting weighting);
+
 /* ---- pools: samples drawn ahead, read by every shading point ------------------------- */
 
 typedef struct helio_pools helio_pools;

@@ -61,18 +61,6 @@ static void choose_sizes(helio_pools *pools, const helio_pools_desc *desc)
     }
 }
 
-/* Compensated tables leave out what BRDF samples are to see to. */
-static helio_status check_weighting(const helio_tables *tables, helio_strategy strategy)
-{
-    const bool is_mixed = strategy == HELIO_STRATEGY_LIGHT_BRDF || strategy == HELIO_STRATEGY_FACE_BRDF;
-    const bool has_light = strategy_divide(strategy).light != STRATEGY_LIGHT_NONE;
-    if (tables->weighting != HELIO_WEIGHTING_COMPENSATED || is_mixed || !has_light)
-        return HELIO_OK;
-    return fail(HELIO_ERR_ARGUMENT,
-                "the strategy %s cannot use compensated weights, which leave light out; take light+brdf or face+brdf",
-                helio_strategy_name(strategy));
-}
-
 helio_status helio_pools_create(helio_tables *tables, const helio_pools_desc *given, helio_pools **out)
 {
     if (out != NULL)
@@ -81,7 +69,7 @@ helio_status helio_pools_create(helio_tables *tables, const helio_pools_desc *gi
         return fail(HELIO_ERR_ARGUMENT, "helio_pools_create needs tables and a place for the result");
     helio_pools_desc desc;
     HELIO_TRY(resolve_desc(given, &desc));
-    HELIO_TRY(check_weighting(tables, desc.strategy));
+    HELIO_TRY(helio_strategy_check_weighting(desc.strategy, tables->weighting));
     helio_pools *pools = context_allocate(tables->environment->context, 1, sizeof *pools);
     if (pools == NULL)
         return HELIO_ERR_MEMORY;

@@ -55,3 +55,15 @@ strategy_parts strategy_divide(helio_strategy strategy)
 {
     return PARTS[helio_strategy_resolve(strategy)];
 }
+
+helio_status helio_strategy_check_weighting(helio_strategy strategy, helio_weighting weighting)
+{
+    HELIO_TRY(strategy_check(strategy));
+    const helio_strategy resolved = helio_strategy_resolve(strategy);
+    const bool is_mixed = resolved == HELIO_STRATEGY_LIGHT_BRDF || resolved == HELIO_STRATEGY_FACE_BRDF;
+    if (weighting != HELIO_WEIGHTING_COMPENSATED || is_mixed || PARTS[resolved].light == STRATEGY_LIGHT_NONE)
+        return HELIO_OK;
+    return fail(HELIO_ERR_ARGUMENT,
+                "the strategy %s cannot use compensated weights, which leave light out; take light+brdf or face+brdf",
+                helio_strategy_name(strategy));
+}
