@@ -665,7 +665,7 @@ const cli_option option_table[] = {
      .initial = "samples",
      .choices = "samples quadrature",
      .help =
-         "what errors are measured against: many samples by face+brdf, or the light of every texel, which is exact, "
+         "what errors are measured against: many samples by product+brdf, or the light of every texel, which is exact, "
          "takes minutes for small pictures, and knows no shadows",
      .kind = OPTION_CHOICE,
      MEMBER(study.reference_method),

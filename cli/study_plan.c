@@ -315,7 +315,7 @@ void study_plan_describe_reference(const study_plan *plan, char text[STUDY_PLAN_
     if (study_plan_has_quadrature(plan))
         snprintf(text, STUDY_PLAN_REFERENCE, "quadrature over all texels");
     else
-        snprintf(text, STUDY_PLAN_REFERENCE, "%u samples of face+brdf per shading point",
+        snprintf(text, STUDY_PLAN_REFERENCE, "%u samples of product+brdf per shading point",
                  plan->options->study.reference_spp);
 }
 

@@ -61,7 +61,7 @@ double study_truth_work(const study_truth_desc *desc)
 {
     uint32_t aa = desc->renderer.aa;
     return desc->is_quadrature ? QUADRATURE_WORK * quadrature_aa(aa) / aa
-                               : PIECES * study_progress_frame(HELIO_STRATEGY_FACE_BRDF, piece_spp(desc->spp));
+                               : PIECES * study_progress_frame(HELIO_STRATEGY_PRODUCT_BRDF, piece_spp(desc->spp));
 }
 
 static helio_status create(helio_context *context, const study_truth_desc *desc, helio_reference **reference)
@@ -70,7 +70,7 @@ static helio_status create(helio_context *context, const study_truth_desc *desc,
                                  .camera = desc->camera,
                                  .method = desc->is_quadrature ? HELIO_REFERENCE_QUADRATURE : HELIO_REFERENCE_SAMPLING,
                                  .seed = desc->seed};
-    made.renderer.strategy = HELIO_STRATEGY_FACE_BRDF;
+    made.renderer.strategy = HELIO_STRATEGY_PRODUCT_BRDF;
     made.renderer.spp = piece_spp(desc->spp) * made.renderer.aa; /* references count samples of a pixel */
     if (desc->is_quadrature)
         made.renderer.aa = quadrature_aa(made.renderer.aa);

@@ -305,7 +305,7 @@ static void mistakes_are_told(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         fails(cases[i].line, 2, cases[i].word);
     fails("reference --mesh nothing.obj", 1, "nothing.obj");
-    fails("reference --mesh tetrahedron.obj --env sky:day --out a.exr", 2, "--frames N..N");
+    fails("reference --mesh tetrahedron.obj --env sky:day --out a.pfm", 2, "--frames N..N");
 }
 
 int main(void)
