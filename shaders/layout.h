@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: MIT
+ * layout.h - what the host and the shaders must agree on: constants and structures in memory. Read by C and by GLSL.
+ *
+ * Shaders reach all memory by addresses, so that no binding limits its size: the host pushes the addresses of a state,
+ * which stays the same, and of the numbers of a step. Members are in an order in which neither language pads. */
+#ifndef HELIOSTAT_SHADERS_LAYOUT_H
+#define HELIOSTAT_SHADERS_LAYOUT_H
+
+#ifdef VULKAN
+#define ADDRESS(type, name) type name
+#define UINT uint
+#define INT int
+#define FLOAT float
+#define DOUBLE double
+#define STRUCT
+#else
+#include <stdint.h>
+#define ADDRESS(type, name) uint64_t name
+#define UINT uint32_t
+#define INT int32_t
+#define FLOAT float
+#define DOUBLE double
+#define STRUCT struct
+#endif
+
+#define LAYOUT_FACES 6
+#define LAYOUT_TECHNIQUES 7 /* as in strategy.h: the last is the surface's */
+#define LAYOUT_TILES_PER_EDGE 16
+#define LAYOUT_TILES_MOST (LAYOUT_FACES * LAYOUT_TILES_PER_EDGE * LAYOUT_TILES_PER_EDGE)
+
+/* layout_state.light and .surface: strategy_light and strategy_surface. */
+#define LAYOUT_LIGHT_NONE 0
+#define LAYOUT_LIGHT_WHOLE 1
+#define LAYOUT_LIGHT_FACES 2
+#define LAYOUT_LIGHT_BINS 3
+#define LAYOUT_SURFACE_NONE 0
+#define LAYOUT_SURFACE_COSINE 1
+#define LAYOUT_SURFACE_BRDF 2
+
+/* Materials, as bits: a pipeline is built for those that a scene has. */
+#define LAYOUT_DIFFUSE 0
+#define LAYOUT_PHONG 1
+#define LAYOUT_GGX 2
+
+/* The arrays of a pool, see enum sample_array in pools.h. */
+#define LAYOUT_X 0
+#define LAYOUT_Y 1
+#define LAYOUT_Z 2
+#define LAYOUT_RED 3
+#define LAYOUT_GREEN 4
+#define LAYOUT_BLUE 5
+#define LAYOUT_DENSITY 6
+#define LAYOUT_WEIGHTED_RED 7
+#define LAYOUT_WEIGHTED_GREEN 8
+#define LAYOUT_WEIGHTED_BLUE 9
+#define LAYOUT_POOL_ARRAYS 10
+
+/* Streams of random numbers of a point, see gathering.h. */
+#define LAYOUT_STREAM_ROUNDING 1
+#define LAYOUT_STREAM_SURFACE 2
+#define LAYOUT_STREAM_WINDOW 3
+#define LAYOUT_STREAM_BIN 4
+#define LAYOUT_STREAM_SPLIT 5
+
+/* What camera rays meet, see hits.h. */
+#define LAYOUT_HIT_OBJECT 1
+#define LAYOUT_HIT_PLANE 2
+
+/* sum x 2^-exponent, see row_sum in tables.h. */
+struct layout_row_sum {
+    UINT sum;
+    INT exponent;
+};
+
+/* What is known of the map as a whole. */
+struct layout_sums {
+    DOUBLE flux[LAYOUT_FACES];
+    STRUCT layout_row_sum weights[LAYOUT_FACES]; /* of the faces */
+    UINT faces[LAYOUT_FACES + 1];                /* prefix sums of these */
+    INT light_exponent;                          /* all tiles' light is below 2^this, see tiles.c */
+};
+
+/* What depends on the direction from which a bin of normals looks, see normal_bin in normal_bins.h. */
+struct layout_bin {
+    FLOAT centre[3];
+    FLOAT reach;
+};
+
+/* The centre of a tile, and its light. */
+struct layout_tile {
+    FLOAT centre[3];
+    FLOAT light;
+};
+
+/* A direction drawn inside of a tile, see listed_sample in normal_bins.h. */
+struct layout_listed {
+    FLOAT direction[3];
+    FLOAT density;
+    FLOAT radiance[3];
+    FLOAT padding;
+};
+
+struct layout_material {
+    FLOAT diffuse[3];
+    UINT kind;
+    FLOAT specular[3];
+    FLOAT exponent;
+    FLOAT metallic;
+    FLOAT roughness;
+    UINT padding[2];
+};
+
+/* What a camera ray met. */
+struct layout_point {
+    FLOAT normal[3];
+    UINT pixel;
+    FLOAT geometric_normal[3];
+    UINT material; /* index */
+    FLOAT view[3]; /* towards the eye */
+    UINT hit;
+};
+
+/* Counted by shaders; 64 bits in two halves. */
+struct layout_counts {
+    UINT samples[2];
+    UINT useful[2];
+};
+
+#ifdef VULKAN
+layout(buffer_reference, std430, buffer_reference_align = 4) buffer floats
+{
+    float at[];
+};
+layout(buffer_reference, std430, buffer_reference_align = 4) buffer uints
+{
+    uint at[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer texels
+{
+    vec3 at[];
+};
+layout(buffer_reference, std430, buffer_reference_align = 8) buffer row_sums
+{
+    layout_row_sum at[];
+};
+layout(buffer_reference, std430, buffer_reference_align = 8) buffer sums_of_map
+{
+    layout_sums all;
+};
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer bins_of_normals
+{
+    layout_bin at[];
+};
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer tiles_of_map
+{
+    layout_tile at[];
+};
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer listed_samples
+{
+    layout_listed at[];
+};
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer materials_of_scene
+{
+    layout_material at[];
+};
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer points_of_picture
+{
+    layout_point at[];
+};
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer vectors
+{
+    vec4 at[];
+};
+layout(buffer_reference, std430, buffer_reference_align = 4) buffer counts_of_frame
+{
+    layout_counts all;
+};
+#endif
+
+/* Memory, and sizes that stay the same. The shapes are those of the CPU: see tables.h, pools.h, tiles.h and
+ * normal_bins.h. */
+struct layout_state {
+    ADDRESS(texels, cube);         /* [6][R][R][3] */
+    ADDRESS(floats, solid_angles); /* [R][R] */
+    ADDRESS(uints, rows);          /* [6][R][R + 1] */
+    ADDRESS(uints, marginals);     /* [6][R + 1] */
+    ADDRESS(floats, row_densities);
+    ADDRESS(row_sums, weights);    /* [6][R] */
+    ADDRESS(row_sums, fluxes);     /* the same array unless the weighting is the paper's */
+    ADDRESS(sums_of_map, sums);
+    ADDRESS(floats, pools);        /* [LAYOUT_POOL_ARRAYS][stride] */
+    ADDRESS(uints, tile_grid);     /* [tiles]: (face x T + row) x T + column of the tile at a position */
+    ADDRESS(uints, tile_positions); /* [6][T][T]: the way back */
+    ADDRESS(tiles_of_map, tiles);  /* [tiles] */
+    ADDRESS(row_sums, tile_totals);
+    ADDRESS(uints, tile_sums);     /* [tiles][tile_stride] */
+    ADDRESS(floats, segment_densities); /* [6][R][T] */
+    ADDRESS(bins_of_normals, bins);
+    ADDRESS(uints, bin_sums);      /* [bins][tiles + 1] */
+    ADDRESS(floats, bin_shares);   /* [bins] */
+    ADDRESS(floats, greatest);     /* [tiles] */
+    ADDRESS(uints, list_starts);   /* [tiles + 1] */
+    ADDRESS(listed_samples, listed);
+    UINT size;                     /* R */
+    UINT weighting;                /* helio_weighting */
+    UINT light, surface;           /* parts of the strategy */
+    UINT pool_count, techniques, pool_length, pool_stride;
+    UINT tiles_per_edge, tile_count, tile_stride, bins_per_edge;
+    UINT bin_count, list_capacity, pool_samples; /* pool_samples: M, of a bin's pool */
+    FLOAT shake;
+};
+
+/* Numbers of a step of a frame. */
+struct layout_step {
+    ADDRESS(points_of_picture, points);      /* [point_count] */
+    ADDRESS(materials_of_scene, materials);
+    ADDRESS(vectors, picture);               /* [height][width]: red, green, blue, alpha */
+    ADDRESS(floats, object);                 /* [height][width] */
+    ADDRESS(uints, misses);                  /* [miss_count]: pixels that show the background */
+    ADDRESS(counts_of_frame, counts);
+    FLOAT map_axes[9];     /* see environment.h */
+    FLOAT intensity;
+    FLOAT background[9];   /* corner, across, down: see background.h */
+    UINT pool_seed;        /* of the pass */
+    UINT point_seed;       /* of the step */
+    UINT same_seed;        /* all points have it */
+    UINT samples;          /* of a point */
+    FLOAT brdf_share;
+    UINT no_beta;
+    UINT point_count, miss_count;
+    UINT width, height;
+    UINT camera_seed;      /* of the frame, for positions in the pixels ... */
+    UINT camera_sample;    /* ... of this sample; UINT_MAX: the centre */
+    UINT is_first, is_last;
+    UINT shows_background;
+    FLOAT weight;          /* of all samples when the step is over */
+    UINT padding;
+};
+
+/* What is pushed. */
+struct layout_push {
+    UINT state[2], step[2]; /* addresses */
+    UINT parameter[4];      /* of a dispatch */
+};
+
+#ifndef VULKAN
+_Static_assert(sizeof(struct layout_sums) == 128, "as in the shaders");
+_Static_assert(sizeof(struct layout_bin) == 16 && sizeof(struct layout_tile) == 16, "as in the shaders");
+_Static_assert(sizeof(struct layout_listed) == 32, "as in the shaders");
+_Static_assert(sizeof(struct layout_material) == 48 && sizeof(struct layout_point) == 48, "as in the shaders");
+_Static_assert(sizeof(struct layout_state) == 21 * 8 + 16 * 4, "as in the shaders");
+_Static_assert(sizeof(struct layout_step) == 6 * 8 + 36 * 4, "as in the shaders");
+_Static_assert(sizeof(struct layout_push) == 32, "as in the shaders");
+#endif
+#endif
