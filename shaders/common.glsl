@@ -11,12 +11,12 @@
 
 layout(local_size_x_id = 0) in;
 
-layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer state_of_light
+layout(buffer_reference, std430, buffer_reference_align = 8) buffer state_of_light
 {
     layout_state all;
 };
 
-layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer step_of_frame
+layout(buffer_reference, std430, buffer_reference_align = 8) buffer step_of_frame
 {
     layout_step all;
 };

@@ -42,18 +42,9 @@
 #define LAYOUT_PHONG 1
 #define LAYOUT_GGX 2
 
-/* The arrays of a pool, see enum sample_array in pools.h. */
-#define LAYOUT_X 0
-#define LAYOUT_Y 1
-#define LAYOUT_Z 2
-#define LAYOUT_RED 3
-#define LAYOUT_GREEN 4
-#define LAYOUT_BLUE 5
-#define LAYOUT_DENSITY 6
-#define LAYOUT_WEIGHTED_RED 7
-#define LAYOUT_WEIGHTED_GREEN 8
-#define LAYOUT_WEIGHTED_BLUE 9
-#define LAYOUT_POOL_ARRAYS 10
+/* A pool holds two vectors for each sample, in planes one after the other: its direction with its density given the
+ * pool, and radiance / density with nothing. */
+#define LAYOUT_POOL_PLANES 2
 
 /* Streams of random numbers of a point, see gathering.h. */
 #define LAYOUT_STREAM_ROUNDING 1
@@ -78,26 +69,6 @@ struct layout_sums {
     STRUCT layout_row_sum weights[LAYOUT_FACES]; /* of the faces */
     UINT faces[LAYOUT_FACES + 1];                /* prefix sums of these */
     INT light_exponent;                          /* all tiles' light is below 2^this, see tiles.c */
-};
-
-/* What depends on the direction from which a bin of normals looks, see normal_bin in normal_bins.h. */
-struct layout_bin {
-    FLOAT centre[3];
-    FLOAT reach;
-};
-
-/* The centre of a tile, and its light. */
-struct layout_tile {
-    FLOAT centre[3];
-    FLOAT light;
-};
-
-/* A direction drawn inside of a tile, see listed_sample in normal_bins.h. */
-struct layout_listed {
-    FLOAT direction[3];
-    FLOAT density;
-    FLOAT radiance[3];
-    FLOAT padding;
 };
 
 struct layout_material {
@@ -147,23 +118,11 @@ layout(buffer_reference, std430, buffer_reference_align = 8) buffer sums_of_map
 {
     layout_sums all;
 };
-layout(buffer_reference, std430, buffer_reference_align = 16) buffer bins_of_normals
-{
-    layout_bin at[];
-};
-layout(buffer_reference, std430, buffer_reference_align = 16) buffer tiles_of_map
-{
-    layout_tile at[];
-};
-layout(buffer_reference, std430, buffer_reference_align = 16) buffer listed_samples
-{
-    layout_listed at[];
-};
-layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer materials_of_scene
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer materials_of_scene
 {
     layout_material at[];
 };
-layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer points_of_picture
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer points_of_picture
 {
     layout_point at[];
 };
@@ -188,26 +147,27 @@ struct layout_state {
     ADDRESS(row_sums, weights);    /* [6][R] */
     ADDRESS(row_sums, fluxes);     /* the same array unless the weighting is the paper's */
     ADDRESS(sums_of_map, sums);
-    ADDRESS(floats, pools);        /* [LAYOUT_POOL_ARRAYS][stride] */
+    ADDRESS(vectors, pools);       /* [LAYOUT_POOL_PLANES][pool_stride] */
     ADDRESS(uints, tile_grid);     /* [tiles]: (face x T + row) x T + column of the tile at a position */
     ADDRESS(uints, tile_positions); /* [6][T][T]: the way back */
-    ADDRESS(tiles_of_map, tiles);  /* [tiles] */
-    ADDRESS(row_sums, tile_totals);
+    ADDRESS(vectors, tiles);       /* [tiles]: direction to the centre, light in proportion */
+    ADDRESS(row_sums, tile_totals); /* [tiles] */
     ADDRESS(uints, tile_sums);     /* [tiles][tile_stride] */
     ADDRESS(floats, segment_densities); /* [6][R][T] */
-    ADDRESS(bins_of_normals, bins);
+    ADDRESS(vectors, bins);        /* [bins]: direction to the centre, reach */
     ADDRESS(uints, bin_sums);      /* [bins][tiles + 1] */
     ADDRESS(floats, bin_shares);   /* [bins] */
     ADDRESS(floats, greatest);     /* [tiles] */
     ADDRESS(uints, list_starts);   /* [tiles + 1] */
-    ADDRESS(listed_samples, listed);
+    ADDRESS(vectors, listed);      /* [list_capacity][2]: as in pools, given the tile */
     UINT size;                     /* R */
     UINT weighting;                /* helio_weighting */
     UINT light, surface;           /* parts of the strategy */
     UINT pool_count, techniques, pool_length, pool_stride;
     UINT tiles_per_edge, tile_count, tile_stride, bins_per_edge;
-    UINT bin_count, list_capacity, pool_samples; /* pool_samples: M, of a bin's pool */
+    UINT bin_count, list_capacity;
     FLOAT shake;
+    UINT padding;
 };
 
 /* Numbers of a step of a frame. */
@@ -245,8 +205,6 @@ struct layout_push {
 
 #ifndef VULKAN
 _Static_assert(sizeof(struct layout_sums) == 128, "as in the shaders");
-_Static_assert(sizeof(struct layout_bin) == 16 && sizeof(struct layout_tile) == 16, "as in the shaders");
-_Static_assert(sizeof(struct layout_listed) == 32, "as in the shaders");
 _Static_assert(sizeof(struct layout_material) == 48 && sizeof(struct layout_point) == 48, "as in the shaders");
 _Static_assert(sizeof(struct layout_state) == 21 * 8 + 16 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_step) == 6 * 8 + 36 * 4, "as in the shaders");

@@ -102,69 +102,10 @@ static void too_large_a_buffer_is_refused(void **state)
 
 /* ---- tables ---- */
 
-typedef struct world {
-    helio_context *context;
-    helio_device *device;
-    vulkan_commands commands;
-    helio_environment *environment;
-    helio_tables *tables;
-    vulkan_light light;
-} world;
-
-static void make_light(world *w, uint32_t size, helio_weighting weighting)
-{
-    const helio_environment_desc desc = {.cube_size = size};
-    assert_ok(helio_environment_create(w->context, &desc, &w->environment));
-    const light_desc light = {.environment = w->environment, .weighting = weighting, .strategy = HELIO_STRATEGY_FACE};
-    assert_ok(helio_tables_create(w->environment, weighting, &w->tables));
-    assert_ok(light_create(w->device, &w->commands, &light, &w->light));
-}
-
-static void destroy_light(world *w)
-{
-    light_destroy(&w->light);
-    helio_tables_destroy(w->tables);
-    helio_environment_destroy(w->environment);
-}
-
-static world make_world(void)
-{
-    world w = {.context = make_context(1, NULL)};
-    w.device = open_test_device(w.context);
-    assert_ok(commands_create(w.device, &w.commands));
-    return w;
-}
-
-static void destroy_world(world *w)
-{
-    commands_destroy(&w->commands);
-    close_test_device(w->device);
-    helio_context_destroy(w->context);
-}
-
-static void update_both(world *w)
-{
-    assert_ok(helio_tables_update(w->tables));
-    light_stage(&w->light);
-    assert_ok(commands_begin(&w->commands));
-    light_record_upload(&w->light, &w->commands);
-    light_record_tables(&w->light, &w->commands);
-    assert_ok(commands_submit(&w->commands));
-    assert_ok(commands_wait(&w->commands));
-}
-
-static void compare_bits(world *w, const vulkan_buffer *buffer, const void *expected, size_t bytes, const char *what)
-{
-    void *found = read_buffer(&w->commands, buffer, bytes);
-    const uint8_t *a = found, *b = expected;
-    for (size_t i = 0; i < bytes; i++)
-        if (a[i] != b[i])
-            fail_msg("%s differ from byte %zu of %zu on", what, i, bytes);
-    free(found);
-}
+static const helio_pools_desc by_face = {.strategy = HELIO_STRATEGY_FACE, .length = 64};
 
 /* Floats made by divisions, which devices round as they like: three of them, of 2.5 units in the last place each. */
-static void compare_densities(world *w)
+static void compare_densities(vulkan_world *w)
 {
     const size_t count = 6 * (size_t)w->environment->size;
     float *found = read_buffer(&w->commands, &w->light.row_densities, count * sizeof *found);
@@ -176,7 +117,7 @@ static void compare_densities(world *w)
     free(found);
 }
 
-static void compare_sums(world *w)
+static void compare_sums(vulkan_world *w)
 {
     struct layout_sums *found = read_buffer(&w->commands, &w->light.sums, sizeof *found);
     assert_memory_equal(found->weights, w->tables->face_sums, sizeof found->weights);
@@ -186,71 +127,71 @@ static void compare_sums(world *w)
     free(found);
 }
 
-static void compare_tables(world *w)
+static void compare_tables(vulkan_world *w)
 {
     const helio_tables *t = w->tables;
     const size_t size = t->size, rows = 6 * size;
-    compare_bits(w, &w->light.rows, t->rows, rows * (size + 1) * sizeof *t->rows, "rows");
-    compare_bits(w, &w->light.weights, t->row_sums, rows * sizeof *t->row_sums, "sums of rows");
+    world_compare_bits(w, &w->light.rows, t->rows, rows * (size + 1) * sizeof *t->rows, "rows");
+    world_compare_bits(w, &w->light.weights, t->row_sums, rows * sizeof *t->row_sums, "sums of rows");
     if (t->weighting == HELIO_WEIGHTING_PAPER)
-        compare_bits(w, &w->light.fluxes, t->row_fluxes, rows * sizeof *t->row_fluxes, "fluxes of rows");
-    compare_bits(w, &w->light.marginals, t->marginals, 6 * (size + 1) * sizeof *t->marginals, "marginals");
+        world_compare_bits(w, &w->light.fluxes, t->row_fluxes, rows * sizeof *t->row_fluxes, "fluxes of rows");
+    world_compare_bits(w, &w->light.marginals, t->marginals, 6 * (size + 1) * sizeof *t->marginals, "marginals");
     compare_densities(w);
     compare_sums(w);
 }
 
 /* Of large ones one kind, unless there is time for all. */
-static void compare_maps(world *w, uint32_t size, helio_weighting weighting)
+static void compare_maps(vulkan_world *w, uint32_t size, helio_weighting weighting)
 {
     const bool all = size < 256 || is_thorough();
-    make_light(w, size, weighting);
+    world_make_light(w, size, weighting, &by_face);
     for (int kind = all ? 0 : size % 2 ? MAP_SUN : MAP_RANDOM; kind < MAP_KINDS; kind += all ? 1 : MAP_KINDS) {
         print_message("R = %u, %s, %s\n", size, helio_weighting_name(weighting), map_kind_name((map_kind)kind));
         fill_cube(w->environment, (map_kind)kind, size + (uint64_t)kind);
-        update_both(w);
+        world_update(w, 1, 0);
         compare_tables(w);
     }
-    destroy_light(w);
+    world_destroy_light(w);
 }
 
 static void tables_have_the_bits_of_the_cpu(void **state)
 {
     static const uint32_t sizes[] = {1, 2, 3, 5, 16, 31, 100, 255, 512};
-    world w = make_world();
+    vulkan_world w = world_make();
     (void)state;
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
         compare_maps(&w, sizes[i], i % 2 ? HELIO_WEIGHTING_PAPER : HELIO_WEIGHTING_SOLID_ANGLE);
-    destroy_world(&w);
+    world_destroy(&w);
 }
 
 /* With the work groups that hardware gets. */
 static void groups_of_many_threads_make_the_same(void **state)
 {
     static const uint32_t sizes[] = {1, 2, 15, 64, 129, 601};
-    world w = make_world();
+    vulkan_world w = world_make();
     (void)state;
     w.device->info.kind = HELIO_DEVICE_DISCRETE;
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
         compare_maps(&w, sizes[i], i % 2 ? HELIO_WEIGHTING_PAPER : HELIO_WEIGHTING_SOLID_ANGLE);
-    destroy_world(&w);
+    world_destroy(&w);
 }
 
 static void large_tables_have_them_too(void **state)
 {
-    world w = make_world();
+    vulkan_world w = world_make();
     (void)state;
     compare_maps(&w, is_thorough() ? 4096 : 1025, HELIO_WEIGHTING_SOLID_ANGLE);
-    destroy_world(&w);
+    world_destroy(&w);
 }
 
 /* Numbers of every size, the smallest floats among them, which devices may take for 0. */
 static void extreme_numbers_weigh_the_same(void **state)
 {
     enum { SIZE = 33 };
-    world w = make_world();
+    vulkan_world w = world_make();
     uint64_t seed = 11;
     (void)state;
-    make_light(&w, SIZE, HELIO_WEIGHTING_SOLID_ANGLE);
+    world_make_light(&w, SIZE, HELIO_WEIGHTING_SOLID_ANGLE, &by_face);
     for (int round = 0; round < 8; round++) {
         fill_cube(w.environment, MAP_BLACK, 0);
         for (size_t i = 0; i < 6 * SIZE * SIZE * 3; i++)
@@ -259,26 +200,26 @@ static void extreme_numbers_weigh_the_same(void **state)
                                          : 0.0f;
         w.environment->cube[5] = 0x1p-149f;
         w.environment->cube[SIZE * 3 * 7 + 3] = 1e30f;
-        update_both(&w);
+        world_update(&w, 1, 0);
         compare_tables(&w);
     }
-    destroy_light(&w);
-    destroy_world(&w);
+    world_destroy_light(&w);
+    world_destroy(&w);
 }
 
 /* Light of frame t comes from tables of frame t. */
 static void tables_follow_the_frame(void **state)
 {
-    world w = make_world();
+    vulkan_world w = world_make();
     (void)state;
-    make_light(&w, 48, HELIO_WEIGHTING_SOLID_ANGLE);
+    world_make_light(&w, 48, HELIO_WEIGHTING_SOLID_ANGLE, &by_face);
     for (uint64_t frame = 0; frame < 40; frame++) {
         fill_cube(w.environment, frame % 5 == 4 ? MAP_BLACK : MAP_RANDOM, frame);
-        update_both(&w);
+        world_update(&w, 1, 0);
         compare_tables(&w);
     }
-    destroy_light(&w);
-    destroy_world(&w);
+    world_destroy_light(&w);
+    world_destroy(&w);
 }
 
 int main(void)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "vulkan_support.h"
 
+#include "core/random.h"
 #include "env/environment.h"
 
 #include <math.h>
@@ -78,4 +79,64 @@ void *read_buffer(vulkan_commands *commands, const vulkan_buffer *buffer, size_t
     assert_non_null(data);
     assert_ok(commands_download(commands, buffer, data, bytes));
     return data;
+}
+
+vulkan_world world_make(void)
+{
+    vulkan_world w = {.context = make_context(1, NULL)};
+    w.device = open_test_device(w.context);
+    assert_ok(commands_create(w.device, &w.commands));
+    assert_ok(buffer_create(w.device, BUFFER_ON_DEVICE, 1, sizeof(struct layout_step), "a step", &w.step));
+    return w;
+}
+
+void world_destroy(vulkan_world *w)
+{
+    buffer_destroy(w->device, &w->step);
+    commands_destroy(&w->commands);
+    close_test_device(w->device);
+    helio_context_destroy(w->context);
+}
+
+void world_make_light(vulkan_world *w, uint32_t size, helio_weighting weighting, const helio_pools_desc *pools)
+{
+    const helio_environment_desc desc = {.cube_size = size};
+    assert_ok(helio_environment_create(w->context, &desc, &w->environment));
+    assert_ok(helio_tables_create(w->environment, weighting, &w->tables));
+    assert_ok(helio_pools_create(w->tables, pools, &w->pools));
+    assert_ok(light_create(w->device, &w->commands, w->pools, &w->light));
+}
+
+void world_destroy_light(vulkan_world *w)
+{
+    light_destroy(&w->light);
+    helio_pools_destroy(w->pools);
+    helio_tables_destroy(w->tables);
+    helio_environment_destroy(w->environment);
+}
+
+void world_update(vulkan_world *w, uint32_t seed, uint32_t pass)
+{
+    const struct layout_step step = {.pool_seed = hash_combine(seed, pass)};
+    assert_ok(helio_tables_update(w->tables));
+    assert_ok(helio_pools_draw(w->pools, seed, pass));
+    light_stage(&w->light);
+    assert_ok(commands_begin(&w->commands));
+    commands_write(&w->commands, &w->step, &step, sizeof step);
+    light_record_upload(&w->light, &w->commands);
+    light_record_tables(&w->light, &w->commands);
+    light_record_pools(&w->light, &w->commands, w->step.address, true);
+    assert_ok(commands_submit(&w->commands));
+    assert_ok(commands_wait(&w->commands));
+}
+
+void world_compare_bits(vulkan_world *w, const vulkan_buffer *buffer, const void *expected, size_t bytes,
+                        const char *what)
+{
+    void *found = read_buffer(&w->commands, buffer, bytes);
+    const uint8_t *a = found, *b = expected;
+    for (size_t i = 0; i < bytes; i++)
+        if (a[i] != b[i])
+            fail_msg("%s differ from byte %zu of %zu on", what, i, bytes);
+    free(found);
 }

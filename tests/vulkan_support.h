@@ -16,6 +16,30 @@ helio_device *open_test_device(helio_context *context);
 /* Fails if the validation layer had something to say. Destroys the device. */
 void close_test_device(helio_device *device);
 
+/* A device and, from world_make_light() to world_destroy_light(), light on it and on the CPU. */
+typedef struct vulkan_world {
+    helio_context *context;
+    helio_device *device;
+    vulkan_commands commands;
+    helio_environment *environment;
+    helio_tables *tables;
+    helio_pools *pools;
+    vulkan_light light;
+    vulkan_buffer step; /* struct layout_step */
+} vulkan_world;
+
+vulkan_world world_make(void);
+void world_destroy(vulkan_world *w);
+void world_make_light(vulkan_world *w, uint32_t size, helio_weighting weighting, const helio_pools_desc *pools);
+void world_destroy_light(vulkan_world *w);
+
+/* Tables and pools of the current cube, on both. */
+void world_update(vulkan_world *w, uint32_t seed, uint32_t pass);
+
+/* Fails unless so many bytes of a buffer are these. */
+void world_compare_bits(vulkan_world *w, const vulkan_buffer *buffer, const void *expected, size_t bytes,
+                        const char *what);
+
 /* Kinds of maps that tables may have trouble with. */
 typedef enum map_kind {
     MAP_RANDOM, /* some texels and a whole row black, one a sun */

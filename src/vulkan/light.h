@@ -5,35 +5,44 @@
 #ifndef HELIOSTAT_SRC_VULKAN_LIGHT_H
 #define HELIOSTAT_SRC_VULKAN_LIGHT_H
 
-#include "sampling/strategy.h"
+#include "sampling/pools.h"
 #include "vulkan/commands.h"
 #include "vulkan/pipeline.h"
 
-#include <heliostat/sampling.h>
-
-typedef enum light_pass { PASS_ROWS, PASS_MARGINALS, PASS_FACES, LIGHT_PASSES } light_pass;
+typedef enum light_pass {
+    PASS_ROWS,
+    PASS_MARGINALS,
+    PASS_FACES,
+    PASS_POOLS,
+    PASS_TILES,
+    PASS_TILE_LIGHT,
+    PASS_BINS,
+    PASS_GREATEST,
+    PASS_LISTS,
+    PASS_DRAW_LISTS,
+    PASS_DRAW_BINS,
+    LIGHT_PASSES
+} light_pass;
 
 typedef struct vulkan_light {
     helio_device *device;
+    const helio_pools *shape; /* the CPU's, of which this is the image */
     const helio_environment *environment;
-    strategy_parts parts;
     struct layout_state state; /* as the shaders have it */
     vulkan_buffer state_memory;
     vulkan_buffer staging; /* for the cube */
     vulkan_buffer cube, solid_angles, rows, marginals, row_densities, weights, fluxes, sums;
-    VkPipeline passes[LIGHT_PASSES];
+    vulkan_buffer pools;
+    /* Of bins of normals; nothing for other strategies. */
+    vulkan_buffer tile_grid, tile_positions, tiles, tile_totals, tile_sums, segment_densities;
+    vulkan_buffer bins, bin_sums, bin_shares, greatest, list_starts, listed;
+    VkPipeline passes[LIGHT_PASSES]; /* those that the strategy needs */
 } vulkan_light;
 
-typedef struct light_desc {
-    const helio_environment *environment;
-    helio_weighting weighting;
-    helio_strategy strategy;
-    uint32_t pool_length; /* M, 0: the default */
-    uint32_t bins;        /* B, likewise */
-} light_desc;
-
-/* commands: to upload with, free again when this returns. */
-helio_status light_create(helio_device *device, vulkan_commands *commands, const light_desc *desc, vulkan_light *light);
+/* shape: pools whose strategy, weighting and sizes are wanted; they need not be drawn, and must outlive the light.
+ * commands: to upload with, free again when this returns. */
+helio_status light_create(helio_device *device, vulkan_commands *commands, const helio_pools *shape,
+                          vulkan_light *light);
 void light_destroy(vulkan_light *light);
 
 /* Bytes of the cube. */
@@ -46,12 +55,31 @@ void light_stage(vulkan_light *light);
 void light_record_upload(vulkan_light *light, vulkan_commands *commands);
 void light_record_tables(vulkan_light *light, vulkan_commands *commands);
 
+/* Records the drawing of the pools, for the pass whose seed is in a step at this address. What depends on the frame
+ * alone is only done where the pass is its first. */
+void light_record_pools(vulkan_light *light, vulkan_commands *commands, uint64_t step, bool is_first_pass);
+
 /* What passes over the light push. */
 struct layout_push light_push(const vulkan_light *light, uint64_t step, uint32_t parameter);
 
 /* ---- parts -------------------------------------------------------------------------------- */
 
-helio_status light_create_tables(vulkan_light *light, vulkan_commands *commands, helio_weighting weighting);
-void light_destroy_tables(vulkan_light *light);
+/* A buffer that is to be made. */
+typedef struct light_buffer {
+    vulkan_buffer *buffer;
+    buffer_place place;
+    uint64_t count, size;
+    const char *name;
+} light_buffer;
+
+helio_status light_create_buffers(vulkan_light *light, const light_buffer *buffers, size_t count);
+
+/* Threads of a work group: many on hardware, few where software plays it. */
+uint32_t light_threads(const vulkan_light *light);
+
+helio_status light_create_tables(vulkan_light *light, vulkan_commands *commands);
+helio_status light_create_pools(vulkan_light *light);
+helio_status light_create_bins(vulkan_light *light, vulkan_commands *commands);
+void light_record_bins(vulkan_light *light, vulkan_commands *commands, uint64_t step, bool is_first_pass);
 
 #endif

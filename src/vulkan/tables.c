@@ -5,17 +5,12 @@
 #include "env/environment.h"
 #include "vulkan/light.h"
 
-enum { THREADS = 128, THREADS_OF_SOFTWARE = 8, TEXELS = 4, TEXELS_OF_SOFTWARE = 64 };
+enum { TEXELS = 4, TEXELS_OF_SOFTWARE = 64 }; /* that a thread takes at a time */
 
 static helio_status create_buffers(vulkan_light *light, bool has_fluxes)
 {
     const uint64_t size = light->state.size, rows = CUBE_FACES * size;
-    const struct {
-        vulkan_buffer *buffer;
-        buffer_place place;
-        uint64_t count, size;
-        const char *name;
-    } all[] = {
+    const light_buffer all[] = {
         {&light->staging, BUFFER_UPLOAD, rows * size, 3 * sizeof(float), "the map on its way"},
         {&light->cube, BUFFER_ON_DEVICE, rows * size, 3 * sizeof(float), "the cube"},
         {&light->solid_angles, BUFFER_ON_DEVICE, size * size, sizeof(float), "the solid angles"},
@@ -26,9 +21,7 @@ static helio_status create_buffers(vulkan_light *light, bool has_fluxes)
         {&light->fluxes, BUFFER_ON_DEVICE, has_fluxes ? rows : 0, sizeof(struct layout_row_sum), "the fluxes of rows"},
         {&light->sums, BUFFER_ON_DEVICE, 1, sizeof(struct layout_sums), "the sums of the map"},
     };
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-        HELIO_TRY(buffer_create(light->device, all[i].place, all[i].count, all[i].size, all[i].name, all[i].buffer));
-    return HELIO_OK;
+    return light_create_buffers(light, all, sizeof all / sizeof *all);
 }
 
 static void tell_addresses(vulkan_light *light, bool has_fluxes)
@@ -46,34 +39,27 @@ static void tell_addresses(vulkan_light *light, bool has_fluxes)
 
 static helio_status create_passes(vulkan_light *light)
 {
-    const bool software = device_is_software(light->device);
-    const uint32_t threads = software ? THREADS_OF_SOFTWARE : THREADS, texels = software ? TEXELS_OF_SOFTWARE : TEXELS;
-    const pipeline_desc rows = {"rows", 2, {threads, texels}}, marginals = {"marginals", 1, {threads}};
+    const uint32_t threads = light_threads(light);
+    const uint32_t texels_at_once = device_is_software(light->device) ? TEXELS_OF_SOFTWARE : TEXELS;
+    const pipeline_desc rows = {"rows", 2, {threads, texels_at_once}}, marginals = {"marginals", 1, {threads}};
     const pipeline_desc faces = {"faces", 1, {1}};
     HELIO_TRY(pipeline_create(light->device, &rows, &light->passes[PASS_ROWS]));
     HELIO_TRY(pipeline_create(light->device, &marginals, &light->passes[PASS_MARGINALS]));
     return pipeline_create(light->device, &faces, &light->passes[PASS_FACES]);
 }
 
-helio_status light_create_tables(vulkan_light *light, vulkan_commands *commands, helio_weighting weighting)
+helio_status light_create_tables(vulkan_light *light, vulkan_commands *commands)
 {
-    const uint64_t size = light->state.size;
-    const bool has_fluxes = weighting == HELIO_WEIGHTING_PAPER;
-    light->state.weighting = (uint32_t)weighting;
+    const helio_tables *tables = light->shape->tables;
+    const uint64_t size = tables->size;
+    const bool has_fluxes = tables->weighting == HELIO_WEIGHTING_PAPER;
+    light->state.size = tables->size;
+    light->state.weighting = (uint32_t)tables->weighting;
     HELIO_TRY(create_buffers(light, has_fluxes));
     tell_addresses(light, has_fluxes);
     HELIO_TRY(create_passes(light));
     return commands_upload(commands, &light->solid_angles, light->environment->solid_angle,
                            size * size * sizeof(float));
-}
-
-void light_destroy_tables(vulkan_light *light)
-{
-    vulkan_buffer *const all[] = {&light->staging, &light->cube,      &light->solid_angles,
-                                  &light->rows,    &light->marginals, &light->row_densities,
-                                  &light->weights, &light->fluxes,    &light->sums};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-        buffer_destroy(light->device, all[i]);
 }
 
 void light_record_tables(vulkan_light *light, vulkan_commands *commands)
