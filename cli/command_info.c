@@ -110,7 +110,11 @@ int command_info(const cli_options *options)
     printf("cores       %u logical\n", machine_cores());
     if (!print_isa())
         return message_failure("%s", helio_last_error());
+#ifdef HELIO_WITH_VULKAN
+    printf("backends    cpu vulkan\n");
+#else
     printf("backends    cpu\n");
+#endif
     printf("features\n");
     for (size_t i = 0; i < sizeof features / sizeof features[0]; i++)
         printf("  %-8s  %-3s  %s\n", features[i].name, features[i].present ? "yes" : "no", features[i].use);

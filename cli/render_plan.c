@@ -67,8 +67,13 @@ static int choose_light(render_plan *plan, bool may_be_sequence)
 
 static int check_program(const cli_options *options)
 {
-    if (is(options->backend, "vulkan"))
-        return message_usage("--backend vulkan is not in this version; give auto or cpu");
+    const bool is_vulkan = is(options->backend, "vulkan");
+    if (is_vulkan && !is(options->visibility, "none"))
+        return message_usage("--backend vulkan traces no shadow rays yet; give --visibility none, or --backend cpu");
+    if (is_vulkan && options->aovs)
+        return message_usage("--backend vulkan makes no layers for --aovs; give --backend cpu");
+    if (options->device != NULL && !is_vulkan)
+        return message_usage("--device names a graphics processor, which only --backend vulkan uses");
     if (options->quiet && options->verbose)
         return message_usage("--quiet and --verbose exclude each other; give one of them");
     return EXIT_CODE_OK;

@@ -118,14 +118,6 @@ layout(buffer_reference, std430, buffer_reference_align = 8) buffer sums_of_map
 {
     layout_sums all;
 };
-layout(buffer_reference, std430, buffer_reference_align = 16) buffer materials_of_scene
-{
-    layout_material at[];
-};
-layout(buffer_reference, std430, buffer_reference_align = 16) buffer points_of_picture
-{
-    layout_point at[];
-};
 layout(buffer_reference, std430, buffer_reference_align = 16) buffer vectors
 {
     vec4 at[];
@@ -172,8 +164,8 @@ struct layout_state {
 
 /* Numbers of a step of a frame. */
 struct layout_step {
-    ADDRESS(points_of_picture, points);      /* [point_count] */
-    ADDRESS(materials_of_scene, materials);
+    ADDRESS(vectors, points);                /* [point_count][3]: struct layout_point */
+    ADDRESS(vectors, materials);             /* [...][3]: struct layout_material */
     ADDRESS(vectors, picture);               /* [height][width]: red, green, blue, alpha */
     ADDRESS(floats, object);                 /* [height][width] */
     ADDRESS(uints, misses);                  /* [miss_count]: pixels that show the background */

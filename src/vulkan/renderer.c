@@ -1,0 +1,346 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A frame on a device: the cube goes up, tables and pools are made of it, points are lit, the picture comes back. */
+#include "vulkan/renderer.h"
+
+#include "core/context.h"
+#include "core/error.h"
+#include "core/random.h"
+#include "env/environment.h"
+#include "vulkan/light.h"
+#include "vulkan/points.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BACKGROUND_THREADS = 64 };
+static const float DEFAULT_BRDF_SHARE = 0.5f;
+
+/* How work is shared out when points are lit, see shade.comp. */
+typedef struct shade_shape {
+    uint32_t threads, points, lanes;
+} shade_shape;
+
+struct vulkan_renderer {
+    helio_device *device;
+    vulkan_commands commands;
+    vulkan_light light;
+    vulkan_points points;
+    bool has_points; /* on the device: those of the renderer's hits */
+    shade_shape shape;
+    VkPipeline shade, background;
+    vulkan_buffer step, counts, picture, object; /* on the device */
+    vulkan_buffer counts_back, picture_back, object_back;
+};
+
+/* Marks of a list of commands. */
+typedef struct step_marks {
+    uint32_t start, uploaded, tables, pools, shaded, back;
+} step_marks;
+
+/* ---- creation ----------------------------------------------------------------------------- */
+
+/* Software takes a point with each thread, as it has no use for neighbours. HELIOSTAT_VULKAN_SHADE=THREADS,POINTS,LANES
+ * is for trying others on new hardware. */
+static shade_shape choose_shape(const helio_device *device)
+{
+    shade_shape shape = device_is_software(device) ? (shade_shape){64, 64, 1} : (shade_shape){64, 32, 16}, tried;
+    const char *variable = getenv("HELIOSTAT_VULKAN_SHADE");
+    if (variable != NULL && sscanf(variable, "%u,%u,%u", &tried.threads, &tried.points, &tried.lanes) == 3 &&
+        tried.lanes > 0 && tried.threads <= 1024 && tried.points <= tried.threads && tried.points > 0 &&
+        tried.threads % tried.lanes == 0)
+        shape = tried;
+    return shape;
+}
+
+static helio_status create_passes(struct vulkan_renderer *v, const helio_renderer *renderer)
+{
+    const struct layout_state *state = &v->light.state;
+    v->shape = choose_shape(v->device);
+    const pipeline_desc shade = {"shade",
+                                 6,
+                                 {v->shape.threads, v->shape.points, v->shape.lanes, points_kinds(renderer->desc.scene),
+                                  state->light, state->surface}};
+    const pipeline_desc background = {"background", 1, {BACKGROUND_THREADS}};
+    HELIO_TRY(pipeline_create(v->device, &shade, &v->shade));
+    return pipeline_create(v->device, &background, &v->background);
+}
+
+static helio_status create_buffers(struct vulkan_renderer *v, uint64_t pixels)
+{
+    const uint64_t colour = 4 * sizeof(float), number = sizeof(float), counts = sizeof(struct layout_counts);
+    HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, 1, sizeof(struct layout_step), "a step", &v->step));
+    HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, 1, counts, "the counts", &v->counts));
+    HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, pixels, colour, "the picture", &v->picture));
+    HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, pixels, number, "the object's coverage", &v->object));
+    HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, 1, counts, "the counts", &v->counts_back));
+    HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, pixels, colour, "the picture", &v->picture_back));
+    return buffer_create(v->device, BUFFER_READBACK, pixels, number, "the object's coverage", &v->object_back);
+}
+
+static helio_status create_parts(struct vulkan_renderer *v, const helio_renderer *renderer)
+{
+    const helio_renderer_desc *desc = &renderer->desc;
+    HELIO_TRY(commands_create(v->device, &v->commands));
+    HELIO_TRY(light_create(v->device, &v->commands, renderer->pools, &v->light));
+    HELIO_TRY(points_create(v->device, desc->scene, desc->width, desc->height, &v->points));
+    HELIO_TRY(create_buffers(v, (uint64_t)desc->width * desc->height));
+    return create_passes(v, renderer);
+}
+
+static helio_status check(const helio_renderer *renderer)
+{
+    if (!renderer->desc.no_visibility)
+        return fail(HELIO_ERR_UNSUPPORTED, "shadow rays are not traced on graphics processors yet; do without "
+                                           "(--visibility none), or compute on the CPU (--backend cpu)");
+    if (renderer->desc.aovs || renderer->extras.keeps_sums || renderer->extras.lighting != NULL)
+        return fail(HELIO_ERR_UNSUPPORTED, "graphics processors make pictures alone; for layers and references compute "
+                                           "on the CPU (--backend cpu)");
+    return HELIO_OK;
+}
+
+helio_status vulkan_renderer_create(helio_renderer *renderer)
+{
+    HELIO_TRY(check(renderer));
+    struct vulkan_renderer *v = context_allocate(renderer->context, 1, sizeof *v);
+    if (v == NULL)
+        return HELIO_ERR_MEMORY;
+    v->device = renderer->desc.device;
+    helio_status status = create_parts(v, renderer);
+    if (status != HELIO_OK) {
+        vulkan_renderer_destroy(v);
+        return status;
+    }
+    renderer->vulkan = v;
+    return HELIO_OK;
+}
+
+void vulkan_renderer_destroy(struct vulkan_renderer *v)
+{
+    if (v == NULL)
+        return;
+    vulkan_buffer *const all[] = {&v->step,        &v->counts,       &v->picture,    &v->object,
+                                  &v->counts_back, &v->picture_back, &v->object_back};
+    commands_destroy(&v->commands);
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        buffer_destroy(v->device, all[i]);
+    pipeline_destroy(v->device, &v->shade);
+    pipeline_destroy(v->device, &v->background);
+    points_destroy(&v->points);
+    light_destroy(&v->light);
+    context_release(v->device->context, v);
+}
+
+/* ---- the numbers of a step ---------------------------------------------------------------- */
+
+static void put_vectors(const vec3 *vectors, float *to)
+{
+    for (int i = 0; i < 3; i++)
+        vec3_to(vectors[i], to + (size_t)i * 3);
+}
+
+static struct layout_step describe_step(const struct vulkan_renderer *v, const struct frame *frame, uint32_t seed)
+{
+    const helio_renderer_desc *desc = &frame->renderer->desc;
+    const vec3 background[3] = {frame->background.corner, frame->background.across, frame->background.down};
+    struct layout_step step = {
+        .points = v->points.points.address,
+        .materials = v->points.materials.address,
+        .picture = v->picture.address,
+        .object = v->object.address,
+        .misses = v->points.misses.address,
+        .counts = v->counts.address,
+        .intensity = desc->environment->intensity,
+        .pool_seed = hash_combine(seed, frame->step.pass),
+        .point_seed = frame->step_seed,
+        .same_seed = desc->no_decorrelation,
+        .samples = frame->step.samples,
+        .brdf_share = desc->brdf_share != 0.0f ? desc->brdf_share : DEFAULT_BRDF_SHARE,
+        .no_beta = desc->no_beta,
+        .point_count = v->points.point_count,
+        .miss_count = v->points.miss_count,
+        .width = desc->width,
+        .height = desc->height,
+        .camera_seed = frame->seed,
+        .camera_sample = desc->aa == 1 ? UINT32_MAX : frame->step.camera_sample,
+        .is_first = frame->step.is_first,
+        .is_last = frame->step.is_last,
+        .shows_background = frame->renderer->film.shows_background,
+        .weight = (float)frame->weight,
+    };
+    put_vectors(desc->environment->map_axes, step.map_axes);
+    put_vectors(background, step.background);
+    return step;
+}
+
+/* ---- camera rays -------------------------------------------------------------------------- */
+
+static void trace_tile(void *data, size_t index)
+{
+    const struct frame *frame = data;
+    primary_tile(frame, frame_tile(frame, index));
+}
+
+/* Traces what is not known and makes lists of it. */
+static void find_points(helio_renderer *renderer, struct frame *frame, bool keeps_hits, helio_frame_info *info)
+{
+    struct vulkan_renderer *v = renderer->vulkan;
+    const bool traces = frame->step.part == 0 && !keeps_hits;
+    const double start = frame_milliseconds();
+    if (traces) {
+        renderer->hits.complete = false;
+        context_parallel_for(renderer->context, frame->tile_count, trace_tile, frame);
+        info->camera_rays += (uint64_t)renderer->desc.width * renderer->desc.height;
+        renderer->hits.camera = frame->camera;
+        renderer->hits.complete = renderer->desc.aa == 1;
+    }
+    v->has_points = v->has_points && !traces;
+    if (!v->has_points)
+        points_stage(&v->points, frame);
+    info->points += frame->step.part == 0 ? v->points.point_count : 0;
+    info->primary_ms += frame_milliseconds() - start;
+}
+
+/* ---- a step ------------------------------------------------------------------------------- */
+
+static void record_shading(struct vulkan_renderer *v, vulkan_commands *commands)
+{
+    const struct layout_push push = light_push(&v->light, v->step.address, 0);
+    const uint64_t points = v->points.point_count, misses = v->points.miss_count;
+    commands_label(commands, "shading");
+    commands_dispatch(commands, v->shade, &push, (points + v->shape.points - 1) / v->shape.points);
+    commands_dispatch(commands, v->background, &push, (misses + BACKGROUND_THREADS - 1) / BACKGROUND_THREADS);
+    commands_barrier(commands);
+    commands_label_end(commands);
+}
+
+static void record_read_back(const struct vulkan_renderer *v, vulkan_commands *commands, bool wants_picture)
+{
+    commands_copy(commands, &v->counts, &v->counts_back, sizeof(struct layout_counts));
+    if (!wants_picture)
+        return;
+    commands_copy(commands, &v->picture, &v->picture_back, v->picture.bytes);
+    commands_copy(commands, &v->object, &v->object_back, v->object.bytes);
+}
+
+/* Starts with what the step needs that is not there yet: the light of the frame, the pools of the pass, the points. */
+static void record_step(struct vulkan_renderer *v, const struct frame *frame, const helio_frame_desc *desc,
+                        bool is_new_pass, step_marks *marks)
+{
+    vulkan_commands *commands = &v->commands;
+    const struct layout_step step = describe_step(v, frame, desc->seed);
+    marks->start = commands_mark(commands);
+    commands_write(commands, &v->step, &step, sizeof step);
+    if (frame->step.is_first)
+        commands_clear(commands, &v->counts);
+    if (!v->has_points)
+        points_record_upload(&v->points, commands);
+    if (frame->step.is_first)
+        light_record_upload(&v->light, commands);
+    commands_barrier(commands);
+    marks->uploaded = commands_mark(commands);
+    if (frame->step.is_first)
+        light_record_tables(&v->light, commands);
+    marks->tables = commands_mark(commands);
+    if (is_new_pass)
+        light_record_pools(&v->light, commands, v->step.address, frame->step.is_first);
+    marks->pools = commands_mark(commands);
+    record_shading(v, commands);
+    marks->shaded = commands_mark(commands);
+    record_read_back(v, commands, !desc->no_picture);
+    marks->back = commands_mark(commands);
+}
+
+static void add_times(const vulkan_commands *commands, const step_marks *marks, helio_frame_info *info)
+{
+    info->upload_ms += commands_milliseconds(commands, marks->start, marks->uploaded);
+    info->tables_ms += commands_milliseconds(commands, marks->uploaded, marks->tables);
+    info->pools_ms += commands_milliseconds(commands, marks->tables, marks->pools);
+    info->shade_ms += commands_milliseconds(commands, marks->pools, marks->shaded);
+    info->read_back_ms += commands_milliseconds(commands, marks->shaded, marks->back);
+}
+
+static helio_status run_step(helio_renderer *renderer, struct frame *frame, const helio_frame_desc *desc,
+                             helio_frame_info *info)
+{
+    struct vulkan_renderer *v = renderer->vulkan;
+    const bool is_new_pass = frame->step.pass == info->passes;
+    step_marks marks;
+    HELIO_TRY(commands_begin(&v->commands));
+    record_step(v, frame, desc, is_new_pass, &marks);
+    HELIO_TRY(commands_submit(&v->commands));
+    HELIO_TRY(commands_wait(&v->commands));
+    add_times(&v->commands, &marks, info);
+    info->passes += is_new_pass;
+    v->has_points = true;
+    return HELIO_OK;
+}
+
+/* ---- a frame ------------------------------------------------------------------------------ */
+
+/* What a frame that stopped has in its pixels are sums. */
+static void develop_stopped(helio_renderer *renderer, double weight)
+{
+    const struct film *film = &renderer->film;
+    const size_t pixels = (size_t)film->width * film->height;
+    const float scale = weight > 0.0 ? (float)(1.0 / weight) : 0.0f;
+    for (size_t i = 0; i < pixels; i++) {
+        for (int c = 0; c < 4; c++)
+            film->rgba[4 * i + (size_t)c] *= scale;
+        if (film->shows_background)
+            film->rgba[4 * i + 3] = weight > 0.0 ? 1.0f : 0.0f;
+        film->object[i] *= scale;
+    }
+}
+
+static void take_picture(helio_renderer *renderer, const struct frame *frame, bool has_stopped)
+{
+    const struct vulkan_renderer *v = renderer->vulkan;
+    const struct film *film = &renderer->film;
+    const size_t pixels = (size_t)film->width * film->height;
+    memcpy(film->rgba, v->picture_back.mapped, pixels * 4 * sizeof *film->rgba);
+    memcpy(film->object, v->object_back.mapped, pixels * sizeof *film->object);
+    if (has_stopped && !frame->step.is_last)
+        develop_stopped(renderer, frame->weight);
+}
+
+static uint64_t whole_count(const uint32_t halves[2])
+{
+    return (uint64_t)halves[1] << 32 | halves[0];
+}
+
+static helio_status run_steps(helio_renderer *renderer, struct frame *frame, const helio_frame_desc *desc,
+                              helio_frame_info *info)
+{
+    const uint32_t steps = frame_step_count(renderer);
+    const bool keeps_hits = !desc->retrace && hits_belong_to(&renderer->hits, &frame->camera);
+    for (uint32_t index = 0; index < steps && !info->stopped; index++) {
+        frame->step = frame_plan_step(renderer, index);
+        frame->weight += frame->step.samples;
+        frame->step_seed = hash_combine(hash_combine(frame->seed, frame->step.camera_sample), frame->step.part);
+        find_points(renderer, frame, keeps_hits, info);
+        HELIO_TRY(run_step(renderer, frame, desc, info));
+        info->stopped = desc->progress != NULL && !desc->progress(desc->user, (float)(index + 1) / (float)steps);
+    }
+    return HELIO_OK;
+}
+
+helio_status vulkan_renderer_render(helio_renderer *renderer, const helio_frame_desc *desc, helio_frame_info *info)
+{
+    struct vulkan_renderer *v = renderer->vulkan;
+    camera_frame camera;
+    *info = (helio_frame_info){0};
+    if (renderer->desc.environment->frame == 0)
+        return fail(HELIO_ERR_ARGUMENT, "the environment holds no map yet; call helio_environment_update first");
+    HELIO_TRY(camera_frame_create(&desc->camera, (float)renderer->desc.width / (float)renderer->desc.height, &camera));
+    struct frame frame = frame_begin(renderer, &camera, desc->seed);
+    light_stage(&v->light);
+    HELIO_TRY(run_steps(renderer, &frame, desc, info));
+    const struct layout_counts *counts = v->counts_back.mapped;
+    info->samples = whole_count(counts->samples);
+    info->samples_useful = whole_count(counts->useful);
+    if (!desc->no_picture)
+        take_picture(renderer, &frame, info->stopped);
+    return HELIO_OK;
+}
