@@ -66,6 +66,7 @@ vec3 filtered(vec3 direction)
 
 void main()
 {
+    begin_with_step();
     const uint index = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
     if (index >= STEP.miss_count)
         return;

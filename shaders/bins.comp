@@ -33,6 +33,7 @@ float weigh(vec3 centre, float reach, uint position)
 
 void main()
 {
+    begin_with_state();
     const uint bin = gl_WorkGroupID.x, count = STATE.tile_count, to = bin * (count + 1u);
     const vec4 numbers = STATE.bins.at[bin];
     const vec3 centre = numbers.xyz;

@@ -28,8 +28,21 @@ layout(push_constant, std430) uniform pushed
     uint parameter[4];
 } push;
 
-#define STATE push.state.all
-#define STEP push.step_now.all
+// What lies in memory would be looked up anew after each write, so passes copy these before they begin. Compilers leave
+// out what is not used.
+layout_state STATE;
+layout_step STEP;
+
+void begin_with_state()
+{
+    STATE = push.state.all;
+}
+
+void begin_with_step()
+{
+    STATE = push.state.all;
+    STEP = push.step_now.all;
+}
 
 // Groups lie in two dimensions, as devices take only so many side by side: the last row may have too many.
 uint group_index()

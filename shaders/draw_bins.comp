@@ -25,6 +25,7 @@ uint find_tile(uint first, uint whole)
 
 void main()
 {
+    begin_with_step();
     const uint sample_index = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
     const uint bin = sample_index / STATE.pool_length, first = bin * (STATE.tile_count + 1u);
     if (bin >= STATE.bin_count)

@@ -40,6 +40,7 @@ face_place draw(uint position, uint index, uint length)
 
 void main()
 {
+    begin_with_step();
     const uint element = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
     if (element >= STATE.list_starts.at[STATE.tile_count])
         return;

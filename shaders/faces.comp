@@ -7,6 +7,7 @@
 
 void main()
 {
+    begin_with_state();
     int highest = int(0x80000000u);
     for (uint face = 0u; face < LAYOUT_FACES; face++)
         highest = max(highest, top_bit(STATE.sums.all.weights[face]));

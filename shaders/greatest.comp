@@ -11,6 +11,7 @@
 
 void main()
 {
+    begin_with_state();
     const uint position = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
     float greatest = 0.0;
     if (position >= STATE.tile_count)

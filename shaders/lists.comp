@@ -16,6 +16,7 @@ uint list_length(uint position, uint divisor)
 
 void main()
 {
+    begin_with_state();
     const uint count = STATE.tile_count, each = (count + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x;
     const uint begin = min(each * gl_LocalInvocationID.x, count), end = min(begin + each, count);
     uint divisor = 0u, before, total;

@@ -63,6 +63,7 @@ double double_power(int exponent)
 
 void main()
 {
+    begin_with_state();
     const uint face = gl_WorkGroupID.x, first = face * STATE.size, marginal = face * (STATE.size + 1u);
     const int exponent = exponent_of_rows(false, first);
     layout_row_sum weight = layout_row_sum(sum_rows(false, first, marginal, exponent), exponent), flux = weight;

@@ -27,6 +27,7 @@ face_place draw(uint pool, uint index)
 
 void main()
 {
+    begin_with_step();
     const uint sample_index = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
     const uint pool = sample_index / STATE.pool_length;
     if (pool >= STATE.pool_count)

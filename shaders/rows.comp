@@ -78,6 +78,7 @@ uint sum_row(row_of_texels row, float factor, bool is_wanted)
 
 void main()
 {
+    begin_with_state();
     const uint index = gl_WorkGroupID.x, size = STATE.size;
     const bool only_sum = push.parameter[0] != 0u, by_angle = only_sum || STATE.weighting == 0u;
     precise float quarter_texels = 0.25 * float(size) * float(size);

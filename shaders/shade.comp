@@ -144,6 +144,7 @@ void count_up()
 
 void main()
 {
+    begin_with_step();
     const uint thread = gl_LocalInvocationID.x, first = group_index() * POINTS;
     const bool has_point = thread < POINTS && first + thread < STEP.point_count;
     shading_point given;

@@ -25,6 +25,7 @@ layout_row_sum total_at(uint position)
 
 void main()
 {
+    begin_with_state();
     uint highest = 0u;
     for (uint i = gl_LocalInvocationID.x; i < STATE.tile_count; i += gl_WorkGroupSize.x) {
         const layout_row_sum total = total_at(i);

@@ -61,6 +61,7 @@ void find_densities(tile_area area, int exponent, uint total, uint column)
 
 void main()
 {
+    begin_with_state();
     const uint position = gl_WorkGroupID.x, edge = STATE.tiles_per_edge, grid = STATE.tile_grid.at[position];
     const uint column = grid % edge, row = grid / edge % edge, face = grid / (edge * edge);
     const tile_area area = tile_area(face * STATE.size + tile_start(row), tile_start(row + 1u) - tile_start(row),

@@ -23,6 +23,7 @@ typedef struct shade_shape {
 } shade_shape;
 
 struct vulkan_renderer {
+    helio_context *context;
     helio_device *device;
     vulkan_commands commands;
     vulkan_light light;
@@ -106,6 +107,7 @@ helio_status vulkan_renderer_create(helio_renderer *renderer)
     struct vulkan_renderer *v = context_allocate(renderer->context, 1, sizeof *v);
     if (v == NULL)
         return HELIO_ERR_MEMORY;
+    v->context = renderer->context;
     v->device = renderer->desc.device;
     helio_status status = create_parts(v, renderer);
     if (status != HELIO_OK) {
@@ -129,7 +131,7 @@ void vulkan_renderer_destroy(struct vulkan_renderer *v)
     pipeline_destroy(v->device, &v->background);
     points_destroy(&v->points);
     light_destroy(&v->light);
-    context_release(v->device->context, v);
+    context_release(v->context, v);
 }
 
 /* ---- the numbers of a step ---------------------------------------------------------------- */
