@@ -13,6 +13,7 @@ typedef struct frame_work {
     bench_mesh mesh;
     helio_scene *scene;
     helio_camera camera;
+    helio_device *device; /* that computes; NULL: the CPU does */
     helio_renderer *renderer;
     uint32_t frame;
     helio_frame_info info; /* of the latest */

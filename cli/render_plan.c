@@ -72,8 +72,6 @@ static int check_program(const cli_options *options)
         return message_usage("--backend vulkan traces no shadow rays yet; give --visibility none, or --backend cpu");
     if (is_vulkan && options->aovs)
         return message_usage("--backend vulkan makes no layers for --aovs; give --backend cpu");
-    if (options->device != NULL && !is_vulkan)
-        return message_usage("--device names a graphics processor, which only --backend vulkan uses");
     if (options->quiet && options->verbose)
         return message_usage("--quiet and --verbose exclude each other; give one of them");
     return EXIT_CODE_OK;
@@ -85,6 +83,8 @@ static void warn_of_idle_sampling(const render_plan *plan)
     const cli_options *options = plan->options;
     const char *strategy = helio_strategy_name(helio_strategy_resolve(plan->strategy));
     bool by_face = strncmp(strategy, "face", 4) == 0, has_brdf = strstr(strategy, "+brdf") != NULL;
+    if (options->device != NULL && !is(options->backend, "vulkan"))
+        message_warning("--device changes nothing with --backend %s", options->backend);
     if (options->no_beta && !by_face)
         message_warning("--no-beta changes nothing with --strategy %s", strategy);
     if (options->bins != 8 && strncmp(strategy, "product", 7) != 0)

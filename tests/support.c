@@ -149,7 +149,7 @@ void remove_directory(const char *path)
 
 /* ---- meshes ---- */
 
-helio_mesh *make_sphere(helio_context *context)
+helio_mesh *make_unit_sphere(helio_context *context)
 {
     enum { RINGS = 12, SECTORS = 16 };
     static float positions[(RINGS + 1) * (SECTORS + 1)][3];

@@ -66,7 +66,7 @@ helio_environment *make_environment(helio_context *context, helio_layout layout,
 /* ---- meshes ---- */
 
 /* A unit sphere of quadrilaterals, each in two triangles. */
-helio_mesh *make_sphere(helio_context *context);
+helio_mesh *make_unit_sphere(helio_context *context);
 
 /* ---- time ---- */
 

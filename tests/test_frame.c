@@ -27,7 +27,7 @@ static stage make_stage(uint32_t threads, helio_ground ground, uint32_t aa, uint
     for (int i = 0; i < MAP / 2 * MAP * 3; i++)
         map[i] = i % 97 == 0 ? 40.0f : 0.2f + (float)(i % 11) * 0.1f;
     s.environment = make_environment(s.context, HELIO_LAYOUT_LATLONG, MAP, MAP / 2, 16, map, NULL);
-    s.mesh = make_sphere(s.context);
+    s.mesh = make_unit_sphere(s.context);
     const helio_scene_desc scene = {.mesh = s.mesh, .ground = ground};
     assert_ok(helio_scene_create(s.context, &scene, &s.scene));
     const helio_renderer_desc renderer = {.environment = s.environment,

@@ -23,13 +23,18 @@ typedef struct stage {
     helio_frame_desc frame;
 } stage;
 
+/* Whether devices are taken for hardware, so that several threads share a point. */
+static bool plays_hardware;
+
 static stage make_stage(const char *material, const helio_renderer_desc *given)
 {
     stage s = {.context = make_context(1, NULL)};
     helio_material parsed;
     s.device = open_test_device(s.context);
+    if (plays_hardware)
+        s.device->info.kind = HELIO_DEVICE_DISCRETE;
     assert_ok(helio_environment_create(s.context, &(helio_environment_desc){.cube_size = SIZE}, &s.environment));
-    s.mesh = make_sphere(s.context);
+    s.mesh = make_unit_sphere(s.context);
     assert_ok(helio_material_parse(material, &parsed));
     const helio_scene_desc scene = {.mesh = s.mesh, .material = &parsed, .ground = HELIO_GROUND_PLANE};
     assert_ok(helio_scene_create(s.context, &scene, &s.scene));
@@ -146,6 +151,16 @@ static void strategies_give_the_pictures_of_the_cpu(void **state)
         for (size_t m = 0; m < 3; m++)
             if (m == (i + i / 3) % 3 || is_thorough())
                 compare_strategy(strategies[i], MATERIALS[m]);
+}
+
+static void threads_that_share_a_point_light_it_alike(void **state)
+{
+    (void)state;
+    plays_hardware = true;
+    compare_strategy(HELIO_STRATEGY_FACE_BRDF, MATERIALS[1]);
+    compare_strategy(HELIO_STRATEGY_PRODUCT, MATERIALS[0]);
+    compare_strategy(HELIO_STRATEGY_BRDF, MATERIALS[2]);
+    plays_hardware = false;
 }
 
 static void expect_same(stage *s, double tolerance, const char *what)
@@ -297,6 +312,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(strategies_give_the_pictures_of_the_cpu),
+        cmocka_unit_test(threads_that_share_a_point_light_it_alike),
         cmocka_unit_test(settings_do_what_they_do_on_the_cpu),
         cmocka_unit_test(sequences_give_the_pictures_of_the_cpu),
         cmocka_unit_test(black_maps_give_black_pictures),

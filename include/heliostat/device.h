@@ -58,6 +58,10 @@ HELIO_API void helio_device_destroy(helio_device *device);
 
 HELIO_API helio_device_info helio_device_get_info(const helio_device *device);
 
+/* How long the device takes to copy so many bytes of its own memory, ms, the best of some times: what its other work is
+ * compared with. Takes memory for the time of the call. */
+HELIO_API helio_status helio_device_measure_copy(helio_device *device, uint64_t bytes, double *milliseconds);
+
 /* Messages of the validation layer so far: warnings and errors. 0 where it is not asked. */
 HELIO_API uint64_t helio_device_complaints(const helio_device *device);
 

@@ -39,6 +39,14 @@ helio_device_info helio_device_get_info(const helio_device *device)
     return (helio_device_info){.lacks = "Vulkan"};
 }
 
+helio_status helio_device_measure_copy(helio_device *device, uint64_t bytes, double *milliseconds)
+{
+    (void)device;
+    (void)bytes;
+    (void)milliseconds;
+    return absent();
+}
+
 uint64_t helio_device_complaints(const helio_device *device)
 {
     (void)device;
