@@ -51,7 +51,6 @@
 #define LAYOUT_STREAM_SURFACE 2
 #define LAYOUT_STREAM_WINDOW 3
 #define LAYOUT_STREAM_BIN 4
-#define LAYOUT_STREAM_SPLIT 5
 
 /* What camera rays meet, see hits.h. */
 #define LAYOUT_HIT_OBJECT 1
@@ -158,7 +157,7 @@ struct layout_state {
     UINT pool_count, techniques, pool_length, pool_stride;
     UINT tiles_per_edge, tile_count, tile_stride, bins_per_edge;
     UINT bin_count, list_capacity;
-    FLOAT shake;
+    FLOAT shake, tile_radius, tile_edge; /* of tiles: the greatest angle from the centre, and its sine rounded up */
     UINT padding;
 };
 
@@ -198,7 +197,7 @@ struct layout_push {
 #ifndef VULKAN
 _Static_assert(sizeof(struct layout_sums) == 128, "as in the shaders");
 _Static_assert(sizeof(struct layout_material) == 48 && sizeof(struct layout_point) == 48, "as in the shaders");
-_Static_assert(sizeof(struct layout_state) == 21 * 8 + 16 * 4, "as in the shaders");
+_Static_assert(sizeof(struct layout_state) == 21 * 8 + 18 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_step) == 6 * 8 + 36 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_push) == 32, "as in the shaders");
 #endif

@@ -15,8 +15,14 @@ struct prepared_point {
     uint from[LAYOUT_FACES];      // ... and what is added to such a number to get that of the sample in the pools
     float expected[LAYOUT_FACES]; // number of samples
     float surface_expected;
-    uint surface_count, surface_seed, bin;
+    uint surface_count, surface_seed, bin, seed;
 };
+
+// A point that shines reads no pool of a bin, but weighs the tiles itself: in another pass, shade_tiles.comp.
+bool weighs_tiles(prepared_point p)
+{
+    return LIGHT == LAYOUT_LIGHT_BINS && p.surface_expected > 0.0;
+}
 
 const uint TECHNIQUES = LIGHT == LAYOUT_LIGHT_FACES ? LAYOUT_FACES : LIGHT == LAYOUT_LIGHT_NONE ? 0u : 1u;
 
@@ -36,25 +42,31 @@ vec3 turned(vec3 v)
 
 // ---- shares and expected counts ----
 
-// Pools of bins leave only the specular lobe to the BRDF: see specular_need() in estimate.c.
-float specular_need(shading_point p, scene_material m, uint seed)
+// 0 for a lobe as wide as the sky, 1 for a mirror: see point_tiles.c.
+float narrowness(brdf b)
 {
-    const vec3 view = lift_view(p.normal, p.view);
-    const float specular = prepare_brdf(m, p.normal, view).specular_share;
-    if (!(specular > 0.0))
-        return 0.0;
-    const float need = 0.5 * (specular + sqrt(specular)), random = unit_float(hash_combine(seed, LAYOUT_STREAM_SPLIT));
-    return power_of_two(-int(random - log2_fast(need)));
+    const float width = is_ggx(b.kind) ? 2.0 * sqrt(b.shape) : 1.665 / sqrt(max(b.shape, 1.0));
+    return STATE.tile_radius / (STATE.tile_radius + width / 1.25);
+}
+
+// Bins know light and cosine, and tiles light and BRDF, so that BRDF samples have only the lobe to look after, the more
+// the narrower it is. The share given is what that is at an even split.
+float share_of_need(shading_point p, scene_material m)
+{
+    const brdf b = prepare_brdf(m, p.normal, lift_view(p.normal, p.view));
+    const float need = m.kind != LAYOUT_DIFFUSE ? b.specular_share * narrowness(b) : 0.0;
+    const float for_surface = need * STEP.brdf_share, for_light = (1.0 - need) * (1.0 - STEP.brdf_share);
+    return for_surface > 0.0 ? for_surface / (for_surface + for_light) : 0.0;
 }
 
 // Part of the samples that the surface technique takes.
-float surface_share(shading_point p, scene_material m, uint seed)
+float surface_share(shading_point p, scene_material m)
 {
     if (LIGHT == LAYOUT_LIGHT_NONE)
         return 1.0;
     if (SURFACE == LAYOUT_SURFACE_NONE)
         return 0.0;
-    return STEP.brdf_share * (LIGHT == LAYOUT_LIGHT_BINS ? specular_need(p, m, seed) : 1.0);
+    return LIGHT == LAYOUT_LIGHT_BINS ? share_of_need(p, m) : STEP.brdf_share;
 }
 
 // How much, at most, a face can light a surface with this normal: strategy_beta().
@@ -139,6 +151,7 @@ prepared_point prepare(shading_point given)
     const scene_material m = read_material(given.material_index);
     const vec3 normal = turned(given.normal);
     prepared_point p;
+    p.seed = seed;
     for (uint k = 0u; k < LAYOUT_FACES; k++) {
         p.end[k] = p.from[k] = 0u;
         p.expected[k] = 0.0;
@@ -146,9 +159,7 @@ prepared_point prepare(shading_point given)
     p.geometric_normal = turned(given.geometric_normal);
     p.surface = prepare_brdf(m, normal, lift_view(normal, turned(given.view)));
     p.bin = LIGHT == LAYOUT_LIGHT_BINS ? bin_of_normal(normal, hash_combine(seed, LAYOUT_STREAM_BIN)) : 0u;
-    if (LIGHT == LAYOUT_LIGHT_BINS)
-        p.surface.specular_share = 1.0; // of what the pools leave over
-    expect_counts(normal, surface_share(given, m, seed), p);
+    expect_counts(normal, surface_share(given, m), p);
     round_counts(seed, p);
     p.surface_seed = hash_combine(seed, LAYOUT_STREAM_SURFACE);
     return p;

@@ -21,17 +21,11 @@ layout(constant_id = 5) const uint SURFACE = 2u;
 #include "brdf.glsl"
 #include "point.glsl"
 #include "film.glsl"
+#include "samples.glsl"
 
 shared prepared_point points[POINTS];
 shared vec4 parts[LANES > 1u ? POINTS * LANES : 1u]; // light, and the number of useful samples
 shared uint samples_of_group, useful_of_group;
-
-// Light and useful samples so far.
-void add_sample(vec3 light, bool counts, inout vec4 sum)
-{
-    counts = counts && light.r + light.g + light.b > 0.0;
-    sum += counts ? vec4(light, 1.0) : vec4(0.0);
-}
 
 // ---- samples of the pools ----
 
@@ -53,15 +47,8 @@ void add_pool_sample(prepared_point p, uint i, inout vec4 sum)
     float expected;
     find_sample(p, i, index, expected);
     const vec4 direction = STATE.pools.at[index];
-    vec3 light = STATE.pools.at[STATE.pool_stride + index].rgb; // radiance / density
-    const float cosine = dot(p.surface.normal, direction.xyz), above = dot(p.geometric_normal, direction.xyz);
-    float total = expected;
-    if (SURFACE != LAYOUT_SURFACE_NONE && p.surface_expected > 0.0) {
-        light *= direction.w;
-        total = direction.w * expected + p.surface_expected * brdf_density(p.surface, direction.xyz);
-    }
-    const vec3 value = brdf_value(p.surface, direction.xyz, cosine);
-    add_sample(light * value * (cosine / total), cosine > 0.0 && above > 0.0 && total > 0.0, sum);
+    const vec3 light = STATE.pools.at[STATE.pool_stride + index].rgb; // radiance / density
+    add_light_sample(p, direction.xyz, light, direction.w, expected, SURFACE != LAYOUT_SURFACE_NONE, sum);
 }
 
 // ---- samples of the surface ----
@@ -81,27 +68,7 @@ float density_of_light(prepared_point p, face_place at)
     const float expected = expected_in_face(p, at.face);
     if (LIGHT == LAYOUT_LIGHT_NONE || !(expected > 0.0))
         return 0.0;
-    if (LIGHT == LAYOUT_LIGHT_BINS)
-        return expected * bin_density(p.bin, at);
     return expected * face_density(at) * (LIGHT == LAYOUT_LIGHT_WHOLE ? face_probability(at.face) : 1.0);
-}
-
-void add_surface_sample(prepared_point p, uint i, inout vec4 sum)
-{
-    const float u = unit_float(scrambled_sobol(i, 0u, p.surface_seed));
-    const float v = unit_float(scrambled_sobol(i, 1u, p.surface_seed));
-    const float lobe = unit_float(scrambled_sobol(i, 2u, p.surface_seed));
-    const bool by_cosine = SURFACE == LAYOUT_SURFACE_COSINE;
-    const vec3 direction = by_cosine ? cosine_sample(p.surface.normal, u, v) : brdf_sample(p.surface, lobe, u, v);
-    const float cosine = dot(p.surface.normal, direction), above = dot(p.geometric_normal, direction);
-    if (!(cosine > 0.0 && above > 0.0))
-        return;
-    const cube_position met = cube_project(direction);
-    const face_place at = face_place(met.face, cube_texel(met.v, STATE.size), cube_texel(met.u, STATE.size), met.u, met.v);
-    const float density = by_cosine ? cosine * INVERSE_PI : brdf_density(p.surface, direction);
-    const float total = density_of_light(p, at) + p.surface_expected * density;
-    const vec3 radiance = texel_radiance(texel_index(at.face, at.row, at.column));
-    add_sample(radiance * brdf_value(p.surface, direction, cosine) * (cosine / total), total > 0.0, sum);
 }
 
 // ---- points ----
@@ -115,9 +82,12 @@ vec4 light_point(prepared_point p, uint lane)
         for (uint i = lane; i < count; i += LANES)
             add_pool_sample(p, i, sum);
     }
-    if (SURFACE != LAYOUT_SURFACE_NONE)
-        for (uint i = lane; i < p.surface_count; i += LANES)
-            add_surface_sample(p, i, sum);
+    if (SURFACE != LAYOUT_SURFACE_NONE && LIGHT != LAYOUT_LIGHT_BINS)
+        for (uint i = lane; i < p.surface_count; i += LANES) {
+            const surface_sample drawn = draw_surface_sample(p, i);
+            if (drawn.counts)
+                add_surface_sample(p, drawn, density_of_light(p, drawn.at), sum);
+        }
     return sum;
 }
 
@@ -128,18 +98,11 @@ uint samples_of(prepared_point p)
 
 void finish(shading_point given, prepared_point p, vec4 sum)
 {
+    if (weighs_tiles(p))
+        return;
     film_add(given.pixel, sum.rgb * STEP.intensity, true, given.hit == LAYOUT_HIT_OBJECT);
     atomicAdd(samples_of_group, samples_of(p));
     atomicAdd(useful_of_group, uint(sum.w + 0.5));
-}
-
-// In 64 bits, as two halves.
-void count_up()
-{
-    if (atomicAdd(STEP.counts.all.samples[0], samples_of_group) + samples_of_group < samples_of_group)
-        atomicAdd(STEP.counts.all.samples[1], 1u);
-    if (atomicAdd(STEP.counts.all.useful[0], useful_of_group) + useful_of_group < useful_of_group)
-        atomicAdd(STEP.counts.all.useful[1], 1u);
 }
 
 void main()
@@ -154,6 +117,8 @@ void main()
     if (has_point) {
         given = read_point(first + thread);
         own = prepare(given);
+        if (weighs_tiles(own))
+            own.end[0] = 0u;
         if (LANES > 1u)
             points[thread] = own;
     }
@@ -174,5 +139,5 @@ void main()
     }
     barrier();
     if (thread == 0u && samples_of_group > 0u)
-        count_up();
+        count_up(samples_of_group, useful_of_group);
 }

@@ -112,8 +112,9 @@ static void render_both(stage *s, helio_frame_info *cpu, helio_frame_info *vulka
  * factors, and for a lobe of exponent 120 by 120 times the rounding of a cosine. */
 static const double ROUNDING = 2e-4;
 
-/* A BRDF sample whose direction is rounded otherwise may meet the texel beside: in few pixels, where only that sample
- * differs. */
+/* A BRDF sample whose direction is rounded otherwise may meet the texel beside, and a point that weighs tiles may take
+ * another of a tile's samples where its weights are rounded otherwise: in few pixels, where only that sample differs.
+ */
 static const double PIXELS_BESIDE = 0.02;
 
 static void compare_strategy(helio_strategy strategy, const char *material)
@@ -149,7 +150,7 @@ static void strategies_give_the_pictures_of_the_cpu(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof strategies / sizeof *strategies; i++)
         for (size_t m = 0; m < 3; m++)
-            if (m == (i + i / 3) % 3 || is_thorough())
+            if (m == (i + 1 + i / 3) % 3 || is_thorough())
                 compare_strategy(strategies[i], MATERIALS[m]);
 }
 
@@ -159,7 +160,7 @@ static void threads_that_share_a_point_light_it_alike(void **state)
     plays_hardware = true;
     compare_strategy(HELIO_STRATEGY_FACE_BRDF, MATERIALS[1]);
     compare_strategy(HELIO_STRATEGY_PRODUCT, MATERIALS[0]);
-    compare_strategy(HELIO_STRATEGY_BRDF, MATERIALS[2]);
+    compare_strategy(HELIO_STRATEGY_PRODUCT_BRDF, MATERIALS[2]);
     plays_hardware = false;
 }
 

@@ -55,6 +55,8 @@ static void tell(vulkan_light *light)
     state->bin_count = bins->count;
     state->list_capacity = bins->capacity;
     state->shake = bins->shake;
+    state->tile_radius = bins->tiles->radius;
+    state->tile_edge = bins->tiles->edge;
 }
 
 static helio_status create_passes(vulkan_light *light)

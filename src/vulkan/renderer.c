@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BACKGROUND_THREADS = 64 };
+enum { BACKGROUND_THREADS = 64, TILE_THREADS = 64, TILE_THREADS_OF_SOFTWARE = 8 };
 static const float DEFAULT_BRDF_SHARE = 0.5f;
 
 /* How work is shared out when points are lit, see shade.comp. */
@@ -31,6 +31,7 @@ struct vulkan_renderer {
     bool has_points; /* on the device: those of the renderer's hits */
     shade_shape shape;
     VkPipeline shade, background;
+    VkPipeline shade_tiles;                      /* where points that shine weigh tiles; else nothing */
     vulkan_buffer step, counts, picture, object; /* on the device */
     vulkan_buffer counts_back, picture_back, object_back;
 };
@@ -55,6 +56,17 @@ static shade_shape choose_shape(const helio_device *device)
     return shape;
 }
 
+static helio_status create_shade_tiles(struct vulkan_renderer *v, const helio_renderer *renderer)
+{
+    const struct layout_state *state = &v->light.state;
+    const uint32_t threads = device_is_software(v->device) ? TILE_THREADS_OF_SOFTWARE : TILE_THREADS;
+    const uint32_t kinds = points_kinds(renderer->desc.scene);
+    const pipeline_desc desc = {"shade_tiles", 2, {threads, kinds}};
+    if (state->light != LAYOUT_LIGHT_BINS || state->surface != LAYOUT_SURFACE_BRDF || kinds == 1u << LAYOUT_DIFFUSE)
+        return HELIO_OK;
+    return pipeline_create(v->device, &desc, &v->shade_tiles);
+}
+
 static helio_status create_passes(struct vulkan_renderer *v, const helio_renderer *renderer)
 {
     const struct layout_state *state = &v->light.state;
@@ -65,7 +77,8 @@ static helio_status create_passes(struct vulkan_renderer *v, const helio_rendere
                                   state->light, state->surface}};
     const pipeline_desc background = {"background", 1, {BACKGROUND_THREADS}};
     HELIO_TRY(pipeline_create(v->device, &shade, &v->shade));
-    return pipeline_create(v->device, &background, &v->background);
+    HELIO_TRY(pipeline_create(v->device, &background, &v->background));
+    return create_shade_tiles(v, renderer);
 }
 
 static helio_status create_buffers(struct vulkan_renderer *v, uint64_t pixels)
@@ -129,6 +142,7 @@ void vulkan_renderer_destroy(struct vulkan_renderer *v)
         buffer_destroy(v->device, all[i]);
     pipeline_destroy(v->device, &v->shade);
     pipeline_destroy(v->device, &v->background);
+    pipeline_destroy(v->device, &v->shade_tiles);
     points_destroy(&v->points);
     light_destroy(&v->light);
     context_release(v->context, v);
@@ -212,6 +226,8 @@ static void record_shading(struct vulkan_renderer *v, vulkan_commands *commands)
     const uint64_t points = v->points.point_count, misses = v->points.miss_count;
     commands_label(commands, "shading");
     commands_dispatch(commands, v->shade, &push, (points + v->shape.points - 1) / v->shape.points);
+    if (v->shade_tiles != VK_NULL_HANDLE)
+        commands_dispatch(commands, v->shade_tiles, &push, points);
     commands_dispatch(commands, v->background, &push, (misses + BACKGROUND_THREADS - 1) / BACKGROUND_THREADS);
     commands_barrier(commands);
     commands_label_end(commands);
