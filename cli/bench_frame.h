@@ -16,6 +16,7 @@ typedef struct frame_work {
     helio_device *device; /* that computes; NULL: the CPU does */
     helio_renderer *renderer;
     uint32_t frame;
+    uint32_t row;          /* frames that a device makes in a row */
     helio_frame_info info; /* of the latest */
 } frame_work;
 

@@ -214,6 +214,30 @@ static void sequences_give_the_pictures_of_the_cpu(void **state)
     destroy_stage(&s);
 }
 
+/* Frames whose picture is not wanted go on beside each other; what is told of them comes later. */
+static void frames_on_their_way_do_not_mix(void **state)
+{
+    const helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_PRODUCT, .spp = 16, .bins = 3, .pool_length = 64};
+    stage s = make_stage(MATERIALS[0], &desc);
+    helio_frame_info info, told;
+    (void)state;
+    for (uint64_t round = 0; round < 6; round++) {
+        s.frame.no_picture = true;
+        for (uint64_t i = 0; i < round; i++) {
+            light_stage_with(&s, 100 * round + i);
+            s.frame.seed = (uint32_t)i;
+            assert_ok(helio_renderer_render(s.vulkan, &s.frame, &told));
+        }
+        s.frame.no_picture = false;
+        light_stage_with(&s, round);
+        expect_same(&s, ROUNDING, "the frame after some that were not looked at");
+        assert_ok(helio_renderer_render(s.vulkan, &s.frame, &info));
+        if (round > 2)
+            assert_int_equal(told.samples, info.samples); /* every frame has as many */
+    }
+    destroy_stage(&s);
+}
+
 static void black_maps_give_black_pictures(void **state)
 {
     const helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_FACE_BRDF, .spp = 16};
@@ -316,6 +340,7 @@ int main(void)
         cmocka_unit_test(threads_that_share_a_point_light_it_alike),
         cmocka_unit_test(settings_do_what_they_do_on_the_cpu),
         cmocka_unit_test(sequences_give_the_pictures_of_the_cpu),
+        cmocka_unit_test(frames_on_their_way_do_not_mix),
         cmocka_unit_test(black_maps_give_black_pictures),
         cmocka_unit_test(frames_stop_when_told_to),
         cmocka_unit_test(what_a_device_cannot_do_is_told),

@@ -85,7 +85,7 @@ vulkan_world world_make(void)
 {
     vulkan_world w = {.context = make_context(1, NULL)};
     w.device = open_test_device(w.context);
-    assert_ok(commands_create(w.device, &w.commands));
+    assert_ok(commands_create(w.device, false, &w.commands));
     assert_ok(buffer_create(w.device, BUFFER_ON_DEVICE, 1, sizeof(struct layout_step), "a step", &w.step));
     return w;
 }
@@ -120,13 +120,12 @@ void world_update(vulkan_world *w, uint32_t seed, uint32_t pass)
     const struct layout_step step = {.pool_seed = hash_combine(seed, pass)};
     assert_ok(helio_tables_update(w->tables));
     assert_ok(helio_pools_draw(w->pools, seed, pass));
-    light_stage(&w->light);
+    assert_ok(light_send(&w->light, 1 - w->light.slot));
     assert_ok(commands_begin(&w->commands));
     commands_write(&w->commands, &w->step, &step, sizeof step);
-    light_record_upload(&w->light, &w->commands);
     light_record_tables(&w->light, &w->commands);
     light_record_pools(&w->light, &w->commands, w->step.address, true);
-    assert_ok(commands_submit(&w->commands));
+    assert_ok(commands_submit_between(&w->commands, light_sent(&w->light), VK_NULL_HANDLE));
     assert_ok(commands_wait(&w->commands));
 }
 

@@ -56,8 +56,9 @@ typedef struct helio_frame_desc {
      * none. */
     bool (*progress)(void *user, float done);
     void *user;
-    bool no_picture; /* leave the picture on the device, where there is one: helio_renderer_picture() keeps what it had
-                      */
+    bool no_picture; /* where a device computes, leave the picture there: helio_renderer_picture() keeps what it had.
+                        The frame may then still be on its way on return, two frames are at the most, and the info is
+                        that of the latest frame that is over */
     bool retrace;    /* trace the camera rays even if the previous frame's still hold: to measure them */
 } helio_frame_desc;
 

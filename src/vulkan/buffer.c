@@ -13,7 +13,8 @@ static memory_wish wish_of(buffer_place place)
 {
     const VkMemoryPropertyFlags seen = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     switch (place) {
-    case BUFFER_ON_DEVICE: return (memory_wish){0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT};
+    case BUFFER_ON_DEVICE:
+    case BUFFER_SHARED: return (memory_wish){0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT};
     case BUFFER_READBACK: return (memory_wish){seen, VK_MEMORY_PROPERTY_HOST_CACHED_BIT};
     default: return (memory_wish){seen, 0};
     }
@@ -60,7 +61,7 @@ static helio_status allocate(helio_device *device, buffer_place place, const cha
     HELIO_TRY(vulkan_check(result, "taking memory"));
     HELIO_TRY(
         vulkan_check(device->vk.BindBufferMemory(device->device, buffer->buffer, buffer->memory, 0), "using memory"));
-    if (place == BUFFER_ON_DEVICE)
+    if (place == BUFFER_ON_DEVICE || place == BUFFER_SHARED)
         return HELIO_OK;
     return vulkan_check(device->vk.MapMemory(device->device, buffer->memory, 0, VK_WHOLE_SIZE, 0, &buffer->mapped),
                         "making memory visible");
@@ -76,12 +77,16 @@ helio_status buffer_create(helio_device *device, buffer_place place, uint64_t co
     vulkan_buffer buffer = {.bytes = bytes > LEAST_BYTES ? bytes : LEAST_BYTES};
     if (buffer.bytes > device->info.buffer_bytes)
         return fail_memory(device, buffer.bytes, name);
-    const VkBufferCreateInfo create = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-                                       .size = buffer.bytes,
-                                       .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
-                                                VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
-                                                VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                       .sharingMode = VK_SHARING_MODE_EXCLUSIVE};
+    const uint32_t families[] = {device->queue_family, device->upload_family};
+    const bool is_shared = place == BUFFER_SHARED && families[0] != families[1];
+    const VkBufferCreateInfo create = {
+        .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+        .size = buffer.bytes,
+        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
+                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+        .sharingMode = is_shared ? VK_SHARING_MODE_CONCURRENT : VK_SHARING_MODE_EXCLUSIVE,
+        .queueFamilyIndexCount = is_shared ? 2 : 0,
+        .pQueueFamilyIndices = families};
     HELIO_TRY(vulkan_check(device->vk.CreateBuffer(device->device, &create, NULL, &buffer.buffer), "making a buffer"));
     helio_status status = allocate(device, place, name, &buffer);
     if (status != HELIO_OK) {

@@ -7,6 +7,7 @@
 
 typedef enum buffer_place {
     BUFFER_ON_DEVICE, /* the host cannot see it */
+    BUFFER_SHARED,    /* the same, for both queues */
     BUFFER_UPLOAD,    /* the host writes it, from one end to the other, and does not read */
     BUFFER_READBACK,  /* the host reads it */
 } buffer_place;

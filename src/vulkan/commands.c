@@ -14,7 +14,8 @@ static helio_status create_pool(vulkan_commands *commands)
     const helio_device *device = commands->device;
     const VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                           .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
-                                          .queueFamilyIndex = device->queue_family};
+                                          .queueFamilyIndex =
+                                              commands->uploads ? device->upload_family : device->queue_family};
     HELIO_TRY(vulkan_check(device->vk.CreateCommandPool(device->device, &pool, NULL, &commands->pool),
                            "making a list of commands"));
     const VkCommandBufferAllocateInfo buffer = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
@@ -33,14 +34,14 @@ static helio_status create_times(vulkan_commands *commands)
                                          .queryType = VK_QUERY_TYPE_TIMESTAMP,
                                          .queryCount = COMMANDS_MARKS};
     HELIO_TRY(vulkan_check(device->vk.CreateFence(device->device, &fence, NULL, &commands->fence), "making a fence"));
-    if (!device->info.has_timestamps)
+    if (commands->uploads ? !device->uploads_are_timed : !device->info.has_timestamps)
         return HELIO_OK;
     return vulkan_check(device->vk.CreateQueryPool(device->device, &times, NULL, &commands->times), "making clocks");
 }
 
-helio_status commands_create(helio_device *device, vulkan_commands *commands)
+helio_status commands_create(helio_device *device, bool uploads, vulkan_commands *commands)
 {
-    *commands = (vulkan_commands){.device = device};
+    *commands = (vulkan_commands){.device = device, .uploads = uploads};
     helio_status status = create_pool(commands);
     if (status == HELIO_OK)
         status = create_times(commands);
@@ -62,6 +63,12 @@ void commands_destroy(vulkan_commands *commands)
     *commands = (vulkan_commands){0};
 }
 
+/* Where work of the list is done. */
+static VkPipelineStageFlags stages_of(const vulkan_commands *commands)
+{
+    return VK_PIPELINE_STAGE_TRANSFER_BIT | (commands->uploads ? 0 : VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT);
+}
+
 /* ---- from beginning to end ---------------------------------------------------------------- */
 
 helio_status commands_begin(vulkan_commands *commands)
@@ -72,26 +79,48 @@ helio_status commands_begin(vulkan_commands *commands)
     HELIO_TRY(commands_wait(commands));
     HELIO_TRY(vulkan_check(vk->BeginCommandBuffer(commands->buffer, &begin), "recording commands"));
     commands->mark_count = 0;
-    if (commands->times != VK_NULL_HANDLE)
+    if (commands->times != VK_NULL_HANDLE && commands->device->resets_queries)
+        vk->ResetQueryPool(commands->device->device, commands->times, 0, COMMANDS_MARKS);
+    else if (commands->times != VK_NULL_HANDLE)
         vk->CmdResetQueryPool(commands->buffer, commands->times, 0, COMMANDS_MARKS);
+    commands_barrier(commands); /* after what earlier lists do */
     return HELIO_OK;
+}
+
+/* What the host reads once it has waited. */
+static void show_host(const vulkan_commands *commands)
+{
+    const VkAccessFlags by_shaders = commands->uploads ? 0 : VK_ACCESS_SHADER_WRITE_BIT;
+    const VkMemoryBarrier host = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                                  .srcAccessMask = by_shaders | VK_ACCESS_TRANSFER_WRITE_BIT,
+                                  .dstAccessMask = VK_ACCESS_HOST_READ_BIT};
+    commands->device->vk.CmdPipelineBarrier(commands->buffer, stages_of(commands), VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
+                                            &host, 0, NULL, 0, NULL);
 }
 
 helio_status commands_submit(vulkan_commands *commands)
 {
+    return commands_submit_between(commands, VK_NULL_HANDLE, VK_NULL_HANDLE);
+}
+
+helio_status commands_submit_between(vulkan_commands *commands, VkSemaphore after, VkSemaphore before)
+{
     const helio_device *device = commands->device;
-    const VkSubmitInfo submit = {
-        .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &commands->buffer};
-    /* What the host reads once it has waited. */
-    const VkMemoryBarrier host = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
-                                  .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
-                                  .dstAccessMask = VK_ACCESS_HOST_READ_BIT};
-    device->vk.CmdPipelineBarrier(commands->buffer,
-                                  VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
-                                  VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &host, 0, NULL, 0, NULL);
+    const VkPipelineStageFlags stages = stages_of(commands);
+    const VkSubmitInfo submit = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                                 .waitSemaphoreCount = after != VK_NULL_HANDLE,
+                                 .pWaitSemaphores = &after,
+                                 .pWaitDstStageMask = &stages,
+                                 .commandBufferCount = 1,
+                                 .pCommandBuffers = &commands->buffer,
+                                 .signalSemaphoreCount = before != VK_NULL_HANDLE,
+                                 .pSignalSemaphores = &before};
+    show_host(commands);
     HELIO_TRY(vulkan_check(device->vk.EndCommandBuffer(commands->buffer), "recording commands"));
     HELIO_TRY(vulkan_check(device->vk.ResetFences(device->device, 1, &commands->fence), "resetting a fence"));
-    HELIO_TRY(vulkan_check(device->vk.QueueSubmit(device->queue, 1, &submit, commands->fence), "starting work"));
+    HELIO_TRY(vulkan_check(
+        device->vk.QueueSubmit(commands->uploads ? device->upload_queue : device->queue, 1, &submit, commands->fence),
+        "starting work"));
     commands->is_pending = true;
     return HELIO_OK;
 }
@@ -110,12 +139,11 @@ helio_status commands_wait(vulkan_commands *commands)
 
 void commands_barrier(vulkan_commands *commands)
 {
-    const VkPipelineStageFlags stages = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
-    const VkAccessFlags all = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_READ_BIT |
-                              VK_ACCESS_TRANSFER_WRITE_BIT;
-    const VkMemoryBarrier barrier = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
-                                     .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
-                                     .dstAccessMask = all};
+    const VkPipelineStageFlags stages = stages_of(commands);
+    const VkAccessFlags writes = VK_ACCESS_TRANSFER_WRITE_BIT | (commands->uploads ? 0 : VK_ACCESS_SHADER_WRITE_BIT);
+    const VkAccessFlags reads = VK_ACCESS_TRANSFER_READ_BIT | (commands->uploads ? 0 : VK_ACCESS_SHADER_READ_BIT);
+    const VkMemoryBarrier barrier = {
+        .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER, .srcAccessMask = writes, .dstAccessMask = reads | writes};
     commands->device->vk.CmdPipelineBarrier(commands->buffer, stages, stages, 0, 1, &barrier, 0, NULL, 0, NULL);
 }
 

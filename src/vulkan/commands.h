@@ -11,6 +11,7 @@ enum { COMMANDS_MARKS = 16 };
 
 typedef struct vulkan_commands {
     helio_device *device;
+    bool uploads; /* copies alone, on the queue for these */
     VkCommandPool pool;
     VkCommandBuffer buffer;
     VkFence fence;
@@ -19,12 +20,16 @@ typedef struct vulkan_commands {
     bool is_pending; /* submitted and not yet waited for */
 } vulkan_commands;
 
-helio_status commands_create(helio_device *device, vulkan_commands *commands);
+/* uploads: lists will hold copies alone, which may go on beside other work. */
+helio_status commands_create(helio_device *device, bool uploads, vulkan_commands *commands);
 void commands_destroy(vulkan_commands *commands);
 
 /* Begins a new list, when the one before is done. */
 helio_status commands_begin(vulkan_commands *commands);
 helio_status commands_submit(vulkan_commands *commands);
+
+/* The same, to begin when a semaphore is signalled, or to signal one at the end; either may be VK_NULL_HANDLE. */
+helio_status commands_submit_between(vulkan_commands *commands, VkSemaphore after, VkSemaphore before);
 helio_status commands_wait(vulkan_commands *commands);
 
 /* All of these but what was begun last is between commands_begin() and commands_submit(). Nothing waits for what is

@@ -41,7 +41,7 @@ helio_status helio_device_measure_copy(helio_device *device, uint64_t bytes, dou
     vulkan_commands commands;
     if (device == NULL || milliseconds == NULL)
         return fail(HELIO_ERR_ARGUMENT, "helio_device_measure_copy needs a device and a place for the time");
-    HELIO_TRY(commands_create(device, &commands));
+    HELIO_TRY(commands_create(device, false, &commands));
     helio_status status = buffer_create(device, BUFFER_ON_DEVICE, bytes, 1, "what is copied", &from);
     if (status == HELIO_OK)
         status = buffer_create(device, BUFFER_ON_DEVICE, bytes, 1, "the copy", &to);

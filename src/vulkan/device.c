@@ -51,24 +51,29 @@ void device_name_object(const helio_device *device, VkObjectType type, uint64_t 
 static helio_status create_device(helio_device *device)
 {
     const float priority = 1.0f;
-    const VkDeviceQueueCreateInfo queue = {.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-                                           .queueFamilyIndex = device->queue_family,
-                                           .queueCount = 1,
-                                           .pQueuePriorities = &priority};
+    const uint32_t families[] = {device->queue_family, device->upload_family};
+    VkDeviceQueueCreateInfo queues[2];
+    for (int i = 0; i < 2; i++)
+        queues[i] = (VkDeviceQueueCreateInfo){.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                              .queueFamilyIndex = families[i],
+                                              .queueCount = 1,
+                                              .pQueuePriorities = &priority};
     VkPhysicalDeviceVulkan12Features features12 = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
                                                    .scalarBlockLayout = VK_TRUE,
+                                                   .hostQueryReset = device->resets_queries,
                                                    .bufferDeviceAddress = VK_TRUE};
     const VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
                                                 .pNext = &features12,
                                                 .features = {.shaderInt64 = VK_TRUE, .shaderFloat64 = VK_TRUE}};
     const VkDeviceCreateInfo create = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                        .pNext = &features,
-                                       .queueCreateInfoCount = 1,
-                                       .pQueueCreateInfos = &queue};
+                                       .queueCreateInfoCount = families[0] != families[1] ? 2 : 1,
+                                       .pQueueCreateInfos = queues};
     HELIO_TRY(
         vulkan_check(device->vk.CreateDevice(device->physical, &create, NULL, &device->device), "opening the device"));
     vulkan_functions_of_device(&device->vk, device->device);
     device->vk.GetDeviceQueue(device->device, device->queue_family, 0, &device->queue);
+    device->vk.GetDeviceQueue(device->device, device->upload_family, 0, &device->upload_queue);
     return HELIO_OK;
 }
 
@@ -91,6 +96,9 @@ static helio_status choose(helio_device *device, const char *name)
     HELIO_TRY(device_choice_find(choices, count, name, &found));
     device->physical = found->physical;
     device->queue_family = found->queue_family;
+    device->upload_family = found->upload_family;
+    device->uploads_are_timed = found->uploads_are_timed && found->resets_queries;
+    device->resets_queries = found->resets_queries;
     device->timestamp_period = found->timestamp_period;
     device->info = found->info;
     device->vk.GetPhysicalDeviceMemoryProperties(device->physical, &device->memory);

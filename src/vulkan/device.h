@@ -16,8 +16,11 @@ struct helio_device {
     VkDebugUtilsMessengerEXT messenger; /* where messages are asked for */
     VkPhysicalDevice physical;
     VkDevice device;
-    VkQueue queue; /* does all that is asked of it, in this order */
-    uint32_t queue_family;
+    VkQueue queue;        /* does all that is asked of it, in this order */
+    VkQueue upload_queue; /* brings data beside that; the same where there is no other */
+    uint32_t queue_family, upload_family;
+    bool uploads_are_timed;
+    bool resets_queries; /* the host may reset clocks */
     VkPhysicalDeviceMemoryProperties memory;
     float timestamp_period; /* ns of a tick; 0: it cannot tell the time */
     helio_device_info info;

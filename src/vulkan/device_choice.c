@@ -88,6 +88,7 @@ static void find_lacks(const vulkan_functions *vk, device_choice *choice)
         lacks = "Vulkan 1.2";
     } else {
         vk->GetPhysicalDeviceFeatures2(choice->physical, &features);
+        choice->resets_queries = features12.hostQueryReset;
         lacks = !features12.bufferDeviceAddress      ? "addresses of buffers (bufferDeviceAddress)"
                 : !features12.scalarBlockLayout      ? "memory laid out by numbers (scalarBlockLayout)"
                 : !features.features.shaderInt64     ? "integers of 64 bits (shaderInt64)"
@@ -98,7 +99,8 @@ static void find_lacks(const vulkan_functions *vk, device_choice *choice)
     snprintf(choice->info.lacks, sizeof choice->info.lacks, "%s", lacks);
 }
 
-/* A family that computes, if there is one that does not draw as well, as nothing else may be waiting there. */
+/* A family that computes, and one that copies beside it, if there is any. Of those that compute, if there is one that
+ * does not draw as well, as nothing else may be waiting there. */
 static void find_queue(const vulkan_functions *vk, device_choice *choice, float period)
 {
     VkQueueFamilyProperties families[32];
@@ -114,6 +116,16 @@ static void find_queue(const vulkan_functions *vk, device_choice *choice, float 
         choice->timestamp_period = families[i].timestampValidBits >= 32 ? period : 0.0f;
     }
     choice->info.has_timestamps = choice->timestamp_period > 0.0f;
+    choice->upload_family = choice->queue_family;
+    choice->uploads_are_timed = choice->info.has_timestamps;
+    for (uint32_t i = 0; i < count; i++) {
+        const VkQueueFlags others = VK_QUEUE_COMPUTE_BIT | VK_QUEUE_GRAPHICS_BIT;
+        if ((families[i].queueFlags & VK_QUEUE_TRANSFER_BIT) == 0 || (families[i].queueFlags & others) != 0)
+            continue;
+        choice->upload_family = i;
+        choice->uploads_are_timed = choice->info.has_timestamps && families[i].timestampValidBits >= 32;
+        break;
+    }
 }
 
 static void describe_memory(const vulkan_functions *vk, device_choice *choice)

@@ -13,6 +13,8 @@ typedef struct device_choice {
     VkPhysicalDevice physical;
     helio_device_info info;
     uint32_t queue_family;
+    uint32_t upload_family; /* the same where there is none for transfers alone */
+    bool uploads_are_timed, resets_queries;
     float timestamp_period;
 } device_choice;
 

@@ -63,6 +63,9 @@
     X(QueueSubmit)                                                                                                     \
     X(CreateQueryPool)                                                                                                 \
     X(DestroyQueryPool)                                                                                                \
+    X(ResetQueryPool)                                                                                                  \
+    X(CreateSemaphore)                                                                                                 \
+    X(DestroySemaphore)                                                                                                \
     X(GetQueryPoolResults)                                                                                             \
     X(CmdResetQueryPool)                                                                                               \
     X(CmdWriteTimestamp)                                                                                               \

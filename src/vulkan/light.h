@@ -24,14 +24,25 @@ typedef enum light_pass {
     LIGHT_PASSES
 } light_pass;
 
+enum { LIGHT_SLOTS = 2 };
+
+/* What frames have of their own, so that the cube of the next can come while one is worked on. */
+typedef struct light_slot {
+    vulkan_buffer staging, cube;
+    vulkan_buffer state; /* with that cube */
+    vulkan_commands upload;
+    uint32_t started, done; /* marks of the upload */
+    VkSemaphore uploaded;
+} light_slot;
+
 typedef struct vulkan_light {
     helio_device *device;
     const helio_pools *shape; /* the CPU's, of which this is the image */
     const helio_environment *environment;
     struct layout_state state; /* as the shaders have it */
-    vulkan_buffer state_memory;
-    vulkan_buffer staging; /* for the cube */
-    vulkan_buffer cube, solid_angles, rows, marginals, row_densities, weights, fluxes, sums;
+    light_slot slots[LIGHT_SLOTS];
+    uint32_t slot; /* of the frame in hand */
+    vulkan_buffer solid_angles, rows, marginals, row_densities, weights, fluxes, sums;
     vulkan_buffer pools;
     /* Of bins of normals; nothing for other strategies. */
     vulkan_buffer tile_grid, tile_positions, tiles, tile_totals, tile_sums, segment_densities;
@@ -48,11 +59,17 @@ void light_destroy(vulkan_light *light);
 /* Bytes of the cube. */
 uint64_t light_cube_bytes(const vulkan_light *light);
 
-/* Copies the environment's cube to where the device finds it; not while a list that reads it is on its way. */
-void light_stage(vulkan_light *light);
+/* Sends the environment's cube to the device, for a frame of this slot. No list that reads the slot may be on its way.
+ */
+helio_status light_send(vulkan_light *light, uint32_t slot);
 
-/* Record: the copy, and the tables of what was copied. With barriers between, and one behind. */
-void light_record_upload(vulkan_light *light, vulkan_commands *commands);
+/* When the cube has come: what the list that makes the tables is to be submitted after. */
+VkSemaphore light_sent(const vulkan_light *light);
+
+/* How long that took, ms, once it is over. */
+double light_send_milliseconds(const vulkan_light *light, uint32_t slot);
+
+/* Records the making of the tables of the slot in hand, with a barrier behind. */
 void light_record_tables(vulkan_light *light, vulkan_commands *commands);
 
 /* Records the drawing of the pools, for the pass whose seed is in a step at this address. What depends on the frame

@@ -22,10 +22,26 @@ typedef struct shade_shape {
     uint32_t threads, points, lanes;
 } shade_shape;
 
+/* Marks of a list of commands. */
+typedef struct step_marks {
+    uint32_t start, uploaded, tables, pools, shaded, back;
+} step_marks;
+
+/* A frame that may still be on its way while the next is begun. */
+typedef struct frame_slot {
+    vulkan_commands commands;
+    step_marks marks;
+    vulkan_buffer counts_back;
+    helio_frame_info info; /* as far as it is known */
+    bool is_pending;
+} frame_slot;
+
 struct vulkan_renderer {
     helio_context *context;
     helio_device *device;
-    vulkan_commands commands;
+    frame_slot slots[LIGHT_SLOTS];
+    uint32_t next;                /* slot */
+    helio_frame_info latest_info; /* of the latest frame that is known to be over */
     vulkan_light light;
     vulkan_points points;
     bool has_points; /* on the device: those of the renderer's hits */
@@ -33,13 +49,8 @@ struct vulkan_renderer {
     VkPipeline shade, background;
     VkPipeline shade_tiles;                      /* where points that shine weigh tiles; else nothing */
     vulkan_buffer step, counts, picture, object; /* on the device */
-    vulkan_buffer counts_back, picture_back, object_back;
+    vulkan_buffer picture_back, object_back;
 };
-
-/* Marks of a list of commands. */
-typedef struct step_marks {
-    uint32_t start, uploaded, tables, pools, shaded, back;
-} step_marks;
 
 /* ---- creation ----------------------------------------------------------------------------- */
 
@@ -88,7 +99,6 @@ static helio_status create_buffers(struct vulkan_renderer *v, uint64_t pixels)
     HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, 1, counts, "the counts", &v->counts));
     HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, pixels, colour, "the picture", &v->picture));
     HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, pixels, number, "the object's coverage", &v->object));
-    HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, 1, counts, "the counts", &v->counts_back));
     HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, pixels, colour, "the picture", &v->picture_back));
     return buffer_create(v->device, BUFFER_READBACK, pixels, number, "the object's coverage", &v->object_back);
 }
@@ -96,8 +106,13 @@ static helio_status create_buffers(struct vulkan_renderer *v, uint64_t pixels)
 static helio_status create_parts(struct vulkan_renderer *v, const helio_renderer *renderer)
 {
     const helio_renderer_desc *desc = &renderer->desc;
-    HELIO_TRY(commands_create(v->device, &v->commands));
-    HELIO_TRY(light_create(v->device, &v->commands, renderer->pools, &v->light));
+    for (int i = 0; i < LIGHT_SLOTS; i++) {
+        frame_slot *slot = &v->slots[i];
+        HELIO_TRY(commands_create(v->device, false, &slot->commands));
+        HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, 1, sizeof(struct layout_counts), "the counts",
+                                &slot->counts_back));
+    }
+    HELIO_TRY(light_create(v->device, &v->slots[0].commands, renderer->pools, &v->light));
     HELIO_TRY(points_create(v->device, desc->scene, desc->width, desc->height, &v->points));
     HELIO_TRY(create_buffers(v, (uint64_t)desc->width * desc->height));
     return create_passes(v, renderer);
@@ -135,9 +150,11 @@ void vulkan_renderer_destroy(struct vulkan_renderer *v)
 {
     if (v == NULL)
         return;
-    vulkan_buffer *const all[] = {&v->step,        &v->counts,       &v->picture,    &v->object,
-                                  &v->counts_back, &v->picture_back, &v->object_back};
-    commands_destroy(&v->commands);
+    vulkan_buffer *const all[] = {&v->step, &v->counts, &v->picture, &v->object, &v->picture_back, &v->object_back};
+    for (int i = 0; i < LIGHT_SLOTS; i++) {
+        commands_destroy(&v->slots[i].commands);
+        buffer_destroy(v->device, &v->slots[i].counts_back);
+    }
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         buffer_destroy(v->device, all[i]);
     pipeline_destroy(v->device, &v->shade);
@@ -190,6 +207,50 @@ static struct layout_step describe_step(const struct vulkan_renderer *v, const s
     return step;
 }
 
+/* ---- frames that are on their way --------------------------------------------------------- */
+
+static uint64_t whole_count(const uint32_t halves[2])
+{
+    return (uint64_t)halves[1] << 32 | halves[0];
+}
+
+static void add_times(const vulkan_light *light, const frame_slot *slot, uint32_t index, helio_frame_info *info)
+{
+    const vulkan_commands *commands = &slot->commands;
+    const step_marks *marks = &slot->marks;
+    if (info->upload_ms == 0.0)
+        info->upload_ms = light_send_milliseconds(light, index);
+    info->upload_ms += commands_milliseconds(commands, marks->start, marks->uploaded);
+    info->tables_ms += commands_milliseconds(commands, marks->uploaded, marks->tables);
+    info->pools_ms += commands_milliseconds(commands, marks->tables, marks->pools);
+    info->shade_ms += commands_milliseconds(commands, marks->pools, marks->shaded);
+    info->read_back_ms += commands_milliseconds(commands, marks->shaded, marks->back);
+}
+
+/* Waits for the slot's list and learns what it took and counted. */
+static helio_status finish_slot(struct vulkan_renderer *v, uint32_t index)
+{
+    frame_slot *slot = &v->slots[index];
+    if (!slot->is_pending)
+        return HELIO_OK;
+    slot->is_pending = false;
+    HELIO_TRY(commands_wait(&slot->commands));
+    HELIO_TRY(commands_wait(&v->light.slots[index].upload));
+    const struct layout_counts *counts = slot->counts_back.mapped;
+    add_times(&v->light, slot, index, &slot->info);
+    slot->info.samples = whole_count(counts->samples);
+    slot->info.samples_useful = whole_count(counts->useful);
+    v->latest_info = slot->info;
+    return HELIO_OK;
+}
+
+/* The older one first. */
+static helio_status finish_all(struct vulkan_renderer *v)
+{
+    HELIO_TRY(finish_slot(v, v->next));
+    return finish_slot(v, 1 - v->next);
+}
+
 /* ---- camera rays -------------------------------------------------------------------------- */
 
 static void trace_tile(void *data, size_t index)
@@ -199,7 +260,7 @@ static void trace_tile(void *data, size_t index)
 }
 
 /* Traces what is not known and makes lists of it. */
-static void find_points(helio_renderer *renderer, struct frame *frame, bool keeps_hits, helio_frame_info *info)
+static helio_status find_points(helio_renderer *renderer, struct frame *frame, bool keeps_hits, helio_frame_info *info)
 {
     struct vulkan_renderer *v = renderer->vulkan;
     const bool traces = frame->step.part == 0 && !keeps_hits;
@@ -212,10 +273,13 @@ static void find_points(helio_renderer *renderer, struct frame *frame, bool keep
         renderer->hits.complete = renderer->desc.aa == 1;
     }
     v->has_points = v->has_points && !traces;
-    if (!v->has_points)
+    if (!v->has_points) {
+        HELIO_TRY(finish_all(v)); /* nobody copies the lists before */
         points_stage(&v->points, frame);
+    }
     info->points += frame->step.part == 0 ? v->points.point_count : 0;
     info->primary_ms += frame_milliseconds() - start;
+    return HELIO_OK;
 }
 
 /* ---- a step ------------------------------------------------------------------------------- */
@@ -233,20 +297,22 @@ static void record_shading(struct vulkan_renderer *v, vulkan_commands *commands)
     commands_label_end(commands);
 }
 
-static void record_read_back(const struct vulkan_renderer *v, vulkan_commands *commands, bool wants_picture)
+static void record_read_back(const struct vulkan_renderer *v, frame_slot *slot, bool wants_picture)
 {
-    commands_copy(commands, &v->counts, &v->counts_back, sizeof(struct layout_counts));
+    vulkan_commands *commands = &slot->commands;
+    commands_copy(commands, &v->counts, &slot->counts_back, sizeof(struct layout_counts));
     if (!wants_picture)
         return;
     commands_copy(commands, &v->picture, &v->picture_back, v->picture.bytes);
     commands_copy(commands, &v->object, &v->object_back, v->object.bytes);
 }
 
-/* Starts with what the step needs that is not there yet: the light of the frame, the pools of the pass, the points. */
-static void record_step(struct vulkan_renderer *v, const struct frame *frame, const helio_frame_desc *desc,
-                        bool is_new_pass, step_marks *marks)
+/* Starts with what the step needs that is not there yet: the tables of the frame, the pools of the pass, the points. */
+static void record_step(struct vulkan_renderer *v, frame_slot *slot, const struct frame *frame,
+                        const helio_frame_desc *desc, bool is_new_pass)
 {
-    vulkan_commands *commands = &v->commands;
+    vulkan_commands *commands = &slot->commands;
+    step_marks *marks = &slot->marks;
     const struct layout_step step = describe_step(v, frame, desc->seed);
     marks->start = commands_mark(commands);
     commands_write(commands, &v->step, &step, sizeof step);
@@ -254,8 +320,6 @@ static void record_step(struct vulkan_renderer *v, const struct frame *frame, co
         commands_clear(commands, &v->counts);
     if (!v->has_points)
         points_record_upload(&v->points, commands);
-    if (frame->step.is_first)
-        light_record_upload(&v->light, commands);
     commands_barrier(commands);
     marks->uploaded = commands_mark(commands);
     if (frame->step.is_first)
@@ -266,31 +330,20 @@ static void record_step(struct vulkan_renderer *v, const struct frame *frame, co
     marks->pools = commands_mark(commands);
     record_shading(v, commands);
     marks->shaded = commands_mark(commands);
-    record_read_back(v, commands, !desc->no_picture);
+    record_read_back(v, slot, !desc->no_picture);
     marks->back = commands_mark(commands);
 }
 
-static void add_times(const vulkan_commands *commands, const step_marks *marks, helio_frame_info *info)
+static helio_status run_step(struct vulkan_renderer *v, frame_slot *slot, const struct frame *frame,
+                             const helio_frame_desc *desc)
 {
-    info->upload_ms += commands_milliseconds(commands, marks->start, marks->uploaded);
-    info->tables_ms += commands_milliseconds(commands, marks->uploaded, marks->tables);
-    info->pools_ms += commands_milliseconds(commands, marks->tables, marks->pools);
-    info->shade_ms += commands_milliseconds(commands, marks->pools, marks->shaded);
-    info->read_back_ms += commands_milliseconds(commands, marks->shaded, marks->back);
-}
-
-static helio_status run_step(helio_renderer *renderer, struct frame *frame, const helio_frame_desc *desc,
-                             helio_frame_info *info)
-{
-    struct vulkan_renderer *v = renderer->vulkan;
-    const bool is_new_pass = frame->step.pass == info->passes;
-    step_marks marks;
-    HELIO_TRY(commands_begin(&v->commands));
-    record_step(v, frame, desc, is_new_pass, &marks);
-    HELIO_TRY(commands_submit(&v->commands));
-    HELIO_TRY(commands_wait(&v->commands));
-    add_times(&v->commands, &marks, info);
-    info->passes += is_new_pass;
+    const bool is_new_pass = frame->step.pass == slot->info.passes;
+    HELIO_TRY(commands_begin(&slot->commands));
+    record_step(v, slot, frame, desc, is_new_pass);
+    HELIO_TRY(commands_submit_between(&slot->commands, frame->step.is_first ? light_sent(&v->light) : VK_NULL_HANDLE,
+                                      VK_NULL_HANDLE));
+    slot->is_pending = true;
+    slot->info.passes += is_new_pass;
     v->has_points = true;
     return HELIO_OK;
 }
@@ -323,23 +376,23 @@ static void take_picture(helio_renderer *renderer, const struct frame *frame, bo
         develop_stopped(renderer, frame->weight);
 }
 
-static uint64_t whole_count(const uint32_t halves[2])
+/* All steps but the last are waited for, so that progress can be told. */
+static helio_status run_steps(helio_renderer *renderer, uint32_t index, struct frame *frame,
+                              const helio_frame_desc *desc)
 {
-    return (uint64_t)halves[1] << 32 | halves[0];
-}
-
-static helio_status run_steps(helio_renderer *renderer, struct frame *frame, const helio_frame_desc *desc,
-                              helio_frame_info *info)
-{
+    struct vulkan_renderer *v = renderer->vulkan;
+    helio_frame_info *info = &v->slots[index].info;
     const uint32_t steps = frame_step_count(renderer);
     const bool keeps_hits = !desc->retrace && hits_belong_to(&renderer->hits, &frame->camera);
-    for (uint32_t index = 0; index < steps && !info->stopped; index++) {
-        frame->step = frame_plan_step(renderer, index);
+    for (uint32_t step = 0; step < steps && !info->stopped; step++) {
+        frame->step = frame_plan_step(renderer, step);
         frame->weight += frame->step.samples;
         frame->step_seed = hash_combine(hash_combine(frame->seed, frame->step.camera_sample), frame->step.part);
-        find_points(renderer, frame, keeps_hits, info);
-        HELIO_TRY(run_step(renderer, frame, desc, info));
-        info->stopped = desc->progress != NULL && !desc->progress(desc->user, (float)(index + 1) / (float)steps);
+        HELIO_TRY(find_points(renderer, frame, keeps_hits, info));
+        HELIO_TRY(run_step(v, &v->slots[index], frame, desc));
+        if (step + 1 < steps || !desc->no_picture)
+            HELIO_TRY(finish_slot(v, index));
+        info->stopped = desc->progress != NULL && !desc->progress(desc->user, (float)(step + 1) / (float)steps);
     }
     return HELIO_OK;
 }
@@ -347,18 +400,19 @@ static helio_status run_steps(helio_renderer *renderer, struct frame *frame, con
 helio_status vulkan_renderer_render(helio_renderer *renderer, const helio_frame_desc *desc, helio_frame_info *info)
 {
     struct vulkan_renderer *v = renderer->vulkan;
+    const uint32_t index = v->next;
     camera_frame camera;
-    *info = (helio_frame_info){0};
     if (renderer->desc.environment->frame == 0)
         return fail(HELIO_ERR_ARGUMENT, "the environment holds no map yet; call helio_environment_update first");
     HELIO_TRY(camera_frame_create(&desc->camera, (float)renderer->desc.width / (float)renderer->desc.height, &camera));
     struct frame frame = frame_begin(renderer, &camera, desc->seed);
-    light_stage(&v->light);
-    HELIO_TRY(run_steps(renderer, &frame, desc, info));
-    const struct layout_counts *counts = v->counts_back.mapped;
-    info->samples = whole_count(counts->samples);
-    info->samples_useful = whole_count(counts->useful);
+    HELIO_TRY(finish_slot(v, index));
+    v->slots[index].info = (helio_frame_info){0};
+    HELIO_TRY(light_send(&v->light, index));
+    HELIO_TRY(run_steps(renderer, index, &frame, desc));
+    v->next = 1 - index;
     if (!desc->no_picture)
-        take_picture(renderer, &frame, info->stopped);
+        take_picture(renderer, &frame, v->slots[index].info.stopped);
+    *info = desc->no_picture ? v->latest_info : v->slots[index].info;
     return HELIO_OK;
 }

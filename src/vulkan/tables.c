@@ -11,8 +11,6 @@ static helio_status create_buffers(vulkan_light *light, bool has_fluxes)
 {
     const uint64_t size = light->state.size, rows = CUBE_FACES * size;
     const light_buffer all[] = {
-        {&light->staging, BUFFER_UPLOAD, rows * size, 3 * sizeof(float), "the map on its way"},
-        {&light->cube, BUFFER_ON_DEVICE, rows * size, 3 * sizeof(float), "the cube"},
         {&light->solid_angles, BUFFER_ON_DEVICE, size * size, sizeof(float), "the solid angles"},
         {&light->rows, BUFFER_ON_DEVICE, rows * (size + 1), sizeof(uint32_t), "the rows of the tables"},
         {&light->marginals, BUFFER_ON_DEVICE, CUBE_FACES * (size + 1), sizeof(uint32_t), "the marginals"},
@@ -27,7 +25,6 @@ static helio_status create_buffers(vulkan_light *light, bool has_fluxes)
 static void tell_addresses(vulkan_light *light, bool has_fluxes)
 {
     struct layout_state *state = &light->state;
-    state->cube = light->cube.address;
     state->solid_angles = light->solid_angles.address;
     state->rows = light->rows.address;
     state->marginals = light->marginals.address;
