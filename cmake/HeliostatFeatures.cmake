@@ -101,7 +101,7 @@ if(HELIO_WITH_VULKAN)
         message(FATAL_ERROR "Vulkan was not found: install libvulkan-dev and glslc, or build without it by "
                             "-DHELIO_WITH_VULKAN=OFF.")
     endif()
-    set(SHADERS rows marginals faces pools tiles tile_light bins greatest lists draw_lists draw_bins shade
+    set(SHADERS rows marginals faces moments evenness pools tiles tile_light bins greatest lists draw_lists draw_bins shade
         shade_tiles background)
     include(HeliostatShaders)
     list(APPEND SOURCES src/vulkan/bins.c src/vulkan/buffer.c src/vulkan/commands.c src/vulkan/copy_rate.c src/vulkan/device.c src/vulkan/device_choice.c

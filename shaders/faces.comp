@@ -18,4 +18,5 @@ void main()
         sum += rescale(STATE.sums.all.weights[face], exponent);
     }
     STATE.sums.all.faces[LAYOUT_FACES] = sum;
+    STATE.sums.all.uneven_faces = 0u; // until it is found out
 }

@@ -67,7 +67,7 @@ struct layout_sums {
     DOUBLE flux[LAYOUT_FACES];
     STRUCT layout_row_sum weights[LAYOUT_FACES]; /* of the faces */
     UINT faces[LAYOUT_FACES + 1];                /* prefix sums of these */
-    INT light_exponent;                          /* all tiles' light is below 2^this, see tiles.c */
+    UINT uneven_faces;                           /* where it pays to aim at light, see evenness.h */
 };
 
 struct layout_material {
@@ -100,6 +100,10 @@ struct layout_counts {
 layout(buffer_reference, std430, buffer_reference_align = 4) buffer floats
 {
     float at[];
+};
+layout(buffer_reference, std430, buffer_reference_align = 8) buffer doubles
+{
+    double at[];
 };
 layout(buffer_reference, std430, buffer_reference_align = 4) buffer uints
 {
@@ -151,6 +155,7 @@ struct layout_state {
     ADDRESS(floats, greatest);     /* [tiles] */
     ADDRESS(uints, list_starts);   /* [tiles + 1] */
     ADDRESS(vectors, listed);      /* [list_capacity][2]: as in pools, given the tile */
+    ADDRESS(doubles, moments);     /* [6][T][T][3]: see tile_moments in evenness.c */
     UINT size;                     /* R */
     UINT weighting;                /* helio_weighting */
     UINT light, surface;           /* parts of the strategy */
@@ -158,7 +163,7 @@ struct layout_state {
     UINT tiles_per_edge, tile_count, tile_stride, bins_per_edge;
     UINT bin_count, list_capacity;
     FLOAT shake, tile_radius, tile_edge; /* of tiles: the greatest angle from the centre, and its sine rounded up */
-    UINT padding;
+    UINT is_automatic;      /* the strategy may be left where the light is even */
 };
 
 /* Numbers of a step of a frame. */
@@ -197,7 +202,7 @@ struct layout_push {
 #ifndef VULKAN
 _Static_assert(sizeof(struct layout_sums) == 128, "as in the shaders");
 _Static_assert(sizeof(struct layout_material) == 48 && sizeof(struct layout_point) == 48, "as in the shaders");
-_Static_assert(sizeof(struct layout_state) == 21 * 8 + 18 * 4, "as in the shaders");
+_Static_assert(sizeof(struct layout_state) == 22 * 8 + 18 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_step) == 6 * 8 + 36 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_push) == 32, "as in the shaders");
 #endif

@@ -18,10 +18,11 @@ struct prepared_point {
     uint surface_count, surface_seed, bin, seed;
 };
 
-// A point that shines reads no pool of a bin, but weighs the tiles itself: in another pass, shade_tiles.comp.
+// A point that shines reads no pool of a bin, but weighs the tiles itself: in another pass, shade_tiles.comp. Where the
+// light is even the surface has all samples.
 bool weighs_tiles(prepared_point p)
 {
-    return LIGHT == LAYOUT_LIGHT_BINS && p.surface_expected > 0.0;
+    return LIGHT == LAYOUT_LIGHT_BINS && p.surface_expected > 0.0 && p.expected[0] > 0.0;
 }
 
 const uint TECHNIQUES = LIGHT == LAYOUT_LIGHT_FACES ? LAYOUT_FACES : LIGHT == LAYOUT_LIGHT_NONE ? 0u : 1u;
@@ -59,10 +60,16 @@ float share_of_need(shading_point p, scene_material m)
     return for_surface > 0.0 ? for_surface / (for_surface + for_light) : 0.0;
 }
 
+// Is the light so even that it does not pay to aim at it?
+bool is_even()
+{
+    return LIGHT == LAYOUT_LIGHT_BINS && STATE.is_automatic != 0u && STATE.sums.all.uneven_faces == 0u;
+}
+
 // Part of the samples that the surface technique takes.
 float surface_share(shading_point p, scene_material m)
 {
-    if (LIGHT == LAYOUT_LIGHT_NONE)
+    if (LIGHT == LAYOUT_LIGHT_NONE || is_even())
         return 1.0;
     if (SURFACE == LAYOUT_SURFACE_NONE)
         return 0.0;

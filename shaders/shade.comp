@@ -82,7 +82,7 @@ vec4 light_point(prepared_point p, uint lane)
         for (uint i = lane; i < count; i += LANES)
             add_pool_sample(p, i, sum);
     }
-    if (SURFACE != LAYOUT_SURFACE_NONE && LIGHT != LAYOUT_LIGHT_BINS)
+    if (SURFACE != LAYOUT_SURFACE_NONE)
         for (uint i = lane; i < p.surface_count; i += LANES) {
             const surface_sample drawn = draw_surface_sample(p, i);
             if (drawn.counts)
@@ -118,7 +118,7 @@ void main()
         given = read_point(first + thread);
         own = prepare(given);
         if (weighs_tiles(own))
-            own.end[0] = 0u;
+            own.end[0] = own.surface_count = 0u;
         if (LANES > 1u)
             points[thread] = own;
     }

@@ -3,6 +3,7 @@
  * Pictures by a device are those of the CPU: the same samples of the same pools, for every strategy and material. */
 #include "vulkan_support.h"
 
+#include "cpu/renderer.h"
 #include "env/environment.h"
 
 #include <math.h>
@@ -238,6 +239,25 @@ static void frames_on_their_way_do_not_mix(void **state)
     destroy_stage(&s);
 }
 
+/* AUTO leaves even light to the BRDF, and comes back when it is even no more. */
+static void even_light_is_not_aimed_at(void **state)
+{
+    const helio_renderer_desc desc = {.spp = 32, .bins = 3, .pool_length = 128};
+    (void)state;
+    for (size_t m = 0; m < 2; m++) {
+        stage s = make_stage(MATERIALS[m], &desc);
+        for (int i = 0; i < 3; i++) {
+            light_stage_with(&s, 1);
+            if (i != 1)
+                for (size_t k = 0; k < (size_t)6 * SIZE * SIZE * 3; k++)
+                    s.environment->cube[k] = 1.0f + 0.1f * (float)(k / ((size_t)SIZE * SIZE * 3));
+            expect_same(&s, ROUNDING, "even light");
+            assert_true(s.cpu->pools->is_even == (i != 1));
+        }
+        destroy_stage(&s);
+    }
+}
+
 static void black_maps_give_black_pictures(void **state)
 {
     const helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_FACE_BRDF, .spp = 16};
@@ -341,6 +361,7 @@ int main(void)
         cmocka_unit_test(settings_do_what_they_do_on_the_cpu),
         cmocka_unit_test(sequences_give_the_pictures_of_the_cpu),
         cmocka_unit_test(frames_on_their_way_do_not_mix),
+        cmocka_unit_test(even_light_is_not_aimed_at),
         cmocka_unit_test(black_maps_give_black_pictures),
         cmocka_unit_test(frames_stop_when_told_to),
         cmocka_unit_test(what_a_device_cannot_do_is_told),

@@ -9,6 +9,12 @@ enum { THREADS = 64, THREADS_OF_TILE = 32 };
 
 /* ---- creation ----------------------------------------------------------------------------- */
 
+/* May the strategy be left where the light is even? */
+static bool is_automatic(const vulkan_light *light)
+{
+    return light->shape->is_automatic;
+}
+
 static helio_status create_buffers(vulkan_light *light)
 {
     const normal_bins *bins = light->shape->bins;
@@ -27,6 +33,8 @@ static helio_status create_buffers(vulkan_light *light)
         {&light->bin_shares, BUFFER_ON_DEVICE, bins->count, sizeof(float), "the shares of bins"},
         {&light->greatest, BUFFER_ON_DEVICE, t->count, sizeof(float), "the probabilities of tiles"},
         {&light->list_starts, BUFFER_ON_DEVICE, t->count + 1, sizeof(uint32_t), "the lengths of lists"},
+        {&light->moments, BUFFER_ON_DEVICE, is_automatic(light) ? t->count : 0, 3 * sizeof(double),
+         "the moments of tiles"},
         {&light->listed, BUFFER_ON_DEVICE, 2 * (uint64_t)bins->capacity, 4 * sizeof(float), "the lists of tiles"},
     };
     return light_create_buffers(light, all, sizeof all / sizeof *all);
@@ -48,6 +56,8 @@ static void tell(vulkan_light *light)
     state->greatest = light->greatest.address;
     state->list_starts = light->list_starts.address;
     state->listed = light->listed.address;
+    state->moments = light->moments.address;
+    state->is_automatic = is_automatic(light);
     state->tiles_per_edge = bins->tiles->per_edge;
     state->tile_count = bins->tiles->count;
     state->tile_stride = bins->tiles->stride;
@@ -66,6 +76,8 @@ static helio_status create_passes(vulkan_light *light)
         light_pass pass;
         pipeline_desc desc;
     } all[] = {
+        {PASS_MOMENTS, {"moments", 1, {threads}}},
+        {PASS_EVENNESS, {"evenness", 1, {threads}}},
         {PASS_TILES, {"tiles", 1, {threads < THREADS_OF_TILE ? threads : THREADS_OF_TILE}}},
         {PASS_TILE_LIGHT, {"tile_light", 1, {threads}}},
         {PASS_BINS, {"bins", 1, {threads}}},
@@ -141,6 +153,11 @@ static void record_weights(vulkan_light *light, vulkan_commands *commands)
     const struct layout_push greatest = light_push(light, 0, normal_bins_step(light->shape->bins));
     struct layout_push lists = light_push(light, 0, LIST_FACTOR * light->shape->bins->pool_length);
     lists.parameter[1] = LIST_LEAST;
+    if (is_automatic(light)) {
+        commands_dispatch(commands, light->passes[PASS_MOMENTS], &push, state->tile_count);
+        commands_barrier(commands);
+        commands_dispatch(commands, light->passes[PASS_EVENNESS], &push, CUBE_FACES);
+    }
     commands_dispatch(commands, light->passes[PASS_TILES], &push, state->tile_count);
     commands_barrier(commands);
     commands_dispatch(commands, light->passes[PASS_TILE_LIGHT], &push, 1);

@@ -85,7 +85,8 @@ void light_destroy(vulkan_light *light)
         &light->solid_angles, &light->rows,        &light->marginals, &light->row_densities,     &light->weights,
         &light->fluxes,       &light->sums,        &light->pools,     &light->tile_grid,         &light->tile_positions,
         &light->tiles,        &light->tile_totals, &light->tile_sums, &light->segment_densities, &light->bins,
-        &light->bin_sums,     &light->bin_shares,  &light->greatest,  &light->list_starts,       &light->listed};
+        &light->bin_sums,     &light->bin_shares,  &light->greatest,  &light->list_starts,       &light->listed,
+        &light->moments};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         buffer_destroy(light->device, all[i]);
     for (int i = 0; i < LIGHT_SLOTS; i++)

@@ -123,6 +123,10 @@ static helio_status check(const helio_renderer *renderer)
     if (!renderer->desc.no_visibility)
         return fail(HELIO_ERR_UNSUPPORTED, "shadow rays are not traced on graphics processors yet; do without "
                                            "(--visibility none), or compute on the CPU (--backend cpu)");
+    if (renderer->desc.weighting == HELIO_WEIGHTING_COMPENSATED)
+        return fail(HELIO_ERR_UNSUPPORTED,
+                    "graphics processors have no compensated weights yet; take another weighting, "
+                    "or compute on the CPU (--backend cpu)");
     if (renderer->desc.aovs || renderer->extras.keeps_sums || renderer->extras.lighting != NULL)
         return fail(HELIO_ERR_UNSUPPORTED, "graphics processors make pictures alone; for layers and references compute "
                                            "on the CPU (--backend cpu)");
