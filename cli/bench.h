@@ -15,6 +15,7 @@
 typedef struct bench {
     const bench_plan *plan;
     bench_stage stage;         /* that is at work */
+    helio_device *device;      /* for --backend vulkan; else NULL */
     helio_context *context;    /* with the first instruction set and number of threads */
     helio_environment *source; /* --env as it is: maps of other sizes are made from it */
     bench_mesh mesh;           /* --mesh; empty until a stage needs it */
@@ -142,5 +143,6 @@ int bench_run_estimate(bench *b);
 int bench_run_scene(bench *b);
 int bench_run_rays(bench *b);
 int bench_run_frame(bench *b);
+int bench_run_device(bench *b);
 
 #endif

@@ -64,6 +64,7 @@ static helio_status make_scene(const bench_point *point, frame_work *work)
         .spp = point->spp,
         .strategy = point->strategy,
         .no_visibility = point->scenario != BENCH_SHADOW,
+        .device = work->device,
     };
     return helio_renderer_create(work->light->context, &desc, &work->renderer);
 }

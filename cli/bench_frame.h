@@ -13,8 +13,10 @@ typedef struct frame_work {
     bench_mesh mesh;
     helio_scene *scene;
     helio_camera camera;
+    helio_device *device; /* that computes; NULL: the CPU does */
     helio_renderer *renderer;
     uint32_t frame;
+    uint32_t row;          /* frames that a device makes in a row */
     helio_frame_info info; /* of the latest */
 } frame_work;
 

@@ -88,6 +88,11 @@ static json_t *machine_object(const bench *b)
     json_object_set_new(object, "isa", sets);
     json_object_set_new(object, "version", json_string(HELIO_VERSION_TEXT));
     json_object_set_new(object, "threads", json_whole(b->plan->threads.values[0]));
+    if (b->device != NULL) {
+        const helio_device_info device = helio_device_get_info(b->device);
+        json_object_set_new(object, "device", json_string(device.name));
+        json_object_set_new(object, "driver", json_string(device.driver));
+    }
     return object;
 }
 
@@ -98,8 +103,10 @@ static json_t *report_object(const bench *b)
         json_array_append_new(list, result_object(&b->results.items[i]));
     json_object_set_new(object, "machine", machine_object(b));
     json_object_set_new(object, "env", json_string(b->plan->light.specification));
-    json_object_set_new(object, "fma_peak_gflops", json_number(b->fma_peak_gflops));
-    json_object_set_new(object, "memcpy_gb_per_s", json_number(b->memcpy_gb_per_s));
+    if (b->device == NULL) { /* else it was not measured */
+        json_object_set_new(object, "fma_peak_gflops", json_number(b->fma_peak_gflops));
+        json_object_set_new(object, "memcpy_gb_per_s", json_number(b->memcpy_gb_per_s));
+    }
     json_object_set_new(object, "results", list);
     return object;
 }

@@ -27,8 +27,9 @@ static const bool HAS_MESHES = false;
 #endif
 
 static const char *const stage_names[BENCH_STAGES] = {
-    [BENCH_MACHINE] = "machine",   [BENCH_CUBE] = "cube",   [BENCH_TABLES] = "tables", [BENCH_POOLS] = "pools",
-    [BENCH_ESTIMATE] = "estimate", [BENCH_SCENE] = "scene", [BENCH_RAYS] = "rays",     [BENCH_FRAME] = "frame",
+    [BENCH_MACHINE] = "machine", [BENCH_CUBE] = "cube",         [BENCH_TABLES] = "tables",
+    [BENCH_POOLS] = "pools",     [BENCH_ESTIMATE] = "estimate", [BENCH_SCENE] = "scene",
+    [BENCH_RAYS] = "rays",       [BENCH_FRAME] = "frame",       [BENCH_DEVICE] = "device",
 };
 
 const char *bench_stage_name(bench_stage stage)
@@ -98,7 +99,7 @@ static bool add_stage(bench_plan *plan, const char *item)
 {
     bool all = strcmp(item, "all") == 0, known = all;
     for (int stage = 0; stage < BENCH_STAGES; stage++)
-        if ((all && (stage < BENCH_SCENE || HAS_RAYS)) || strcmp(item, stage_names[stage]) == 0)
+        if ((all && stage < BENCH_DEVICE && (stage < BENCH_SCENE || HAS_RAYS)) || strcmp(item, stage_names[stage]) == 0)
             plan->stages[stage] = known = true;
     return known;
 }
@@ -147,7 +148,8 @@ typedef struct list_option {
 } list_option;
 
 static const list_option list_options[] = {
-    {"stages", "all, or some of machine, cube, tables, pools, estimate, scene, rays and frame", add_stage, false},
+    {"stages", "all, or some of machine, cube, tables, pools, estimate, scene, rays, frame and device", add_stage,
+     false},
     {"isa", "all, best, or some of those that heliostat info names", add_isa, false},
     {"threads", "up to 16 whole numbers from 1 to 1024", add_threads, false},
     {"env-size", "up to 16 whole numbers from 1 to 4096", add_env_size, false},
@@ -181,6 +183,18 @@ static void choose_threads(bench_plan *plan)
         plan->threads.values[plan->threads.count++] = threads < 1024 ? threads : 1024;
 }
 
+/* With a graphics processor nothing else is measured unless it is named. */
+static int choose_stages(bench_plan *plan)
+{
+    const bool is_vulkan = plan->options->backend[0] == 'v';
+    if (plan->stages[BENCH_DEVICE] && !is_vulkan)
+        return message_usage("the stage device of --stages is for graphics processors; give --backend vulkan as well");
+    if (is_vulkan && strcmp(plan->options->bench.stages, "all") == 0)
+        for (int stage = 0; stage < BENCH_STAGES; stage++)
+            plan->stages[stage] = stage == BENCH_DEVICE;
+    return EXIT_CODE_OK;
+}
+
 static void keep_first_values(bench_plan *plan)
 {
     plan->isa_count = plan->strategy_count = plan->material_count = 1;
@@ -197,6 +211,8 @@ static int parse_lists(bench_plan *plan)
     int code = EXIT_CODE_OK;
     for (size_t i = 0; code == EXIT_CODE_OK && i < sizeof texts / sizeof texts[0]; i++)
         code = parse_list(plan, &list_options[i], texts[i]);
+    if (code == EXIT_CODE_OK)
+        code = choose_stages(plan);
     if (plan->threads.count == 0)
         choose_threads(plan);
     if (b->quick)

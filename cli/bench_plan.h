@@ -18,6 +18,7 @@ typedef enum bench_stage {
     BENCH_SCENE,
     BENCH_RAYS,
     BENCH_FRAME,
+    BENCH_DEVICE, /* frames on a graphics processor */
     BENCH_STAGES
 } bench_stage;
 

@@ -13,13 +13,18 @@
 static int (*const stages[BENCH_STAGES])(bench *) = {
     [BENCH_MACHINE] = bench_run_machine, [BENCH_CUBE] = bench_run_cube,         [BENCH_TABLES] = bench_run_tables,
     [BENCH_POOLS] = bench_run_pools,     [BENCH_ESTIMATE] = bench_run_estimate, [BENCH_SCENE] = bench_run_scene,
-    [BENCH_RAYS] = bench_run_rays,       [BENCH_FRAME] = bench_run_frame,
+    [BENCH_RAYS] = bench_run_rays,       [BENCH_FRAME] = bench_run_frame,       [BENCH_DEVICE] = bench_run_device,
 };
 
 static int open_context(bench *b)
 {
+    const cli_options *options = b->plan->options;
     const helio_context_desc desc = {.threads = b->plan->threads.values[0], .isa = b->plan->isas[0]};
-    return bench_check(helio_context_create(&desc, &b->context));
+    const helio_device_desc device = {.name = options->device};
+    helio_status status = helio_context_create(&desc, &b->context);
+    if (status == HELIO_OK && options->backend[0] == 'v')
+        status = helio_device_create(b->context, &device, &b->device);
+    return bench_check(status);
 }
 
 /* The cube of the first frame of --env. */
@@ -62,7 +67,7 @@ static int run_stages(bench *b)
     int code = EXIT_CODE_OK;
     for (int stage = 0; code == EXIT_CODE_OK && stage < BENCH_STAGES; stage++) {
         b->stage = (bench_stage)stage;
-        if (stage == BENCH_MACHINE || b->plan->stages[stage])
+        if ((stage == BENCH_MACHINE && b->device == NULL) || b->plan->stages[stage])
             code = stages[stage](b);
         bench_light_list_release(&b->lights);
     }
@@ -90,6 +95,7 @@ static void release(bench *b)
     bench_results_release(&b->results);
     bench_mesh_release(&b->mesh);
     helio_environment_destroy(b->source);
+    helio_device_destroy(b->device);
     helio_context_destroy(b->context);
 }
 

@@ -4,8 +4,11 @@
 #include "message.h"
 
 #include <heliostat/core.h>
+#include <heliostat/device.h>
 
 #include <stdio.h>
+
+enum { DEVICES_MOST = 16 };
 
 typedef struct feature {
     const char *name, *use;
@@ -48,6 +51,11 @@ static const feature features[] = {
 #else
     {"cairo", "draw figures", false},
 #endif
+#ifdef HELIO_WITH_VULKAN
+    {"Vulkan", "compute on graphics processors", true},
+#else
+    {"Vulkan", "compute on graphics processors", false},
+#endif
 };
 
 /* The instruction set that a context takes, and the others that this machine has kernels for. */
@@ -65,6 +73,31 @@ static bool print_isa(void)
     return true;
 }
 
+static void print_device(const helio_device_info *device)
+{
+    printf("  %s, %s\n", device->name, helio_device_kind_name(device->kind));
+    if (device->lacks[0] != 0)
+        printf("    cannot be used: it lacks %s\n", device->lacks);
+    printf("    driver %s, Vulkan %u.%u.%u\n", device->driver, device->vulkan[0], device->vulkan[1], device->vulkan[2]);
+    printf("    memory %.0f MiB, at most %.0f in a piece; subgroups of %u; %s timestamps\n",
+           (double)device->memory / 0x1p20, (double)device->buffer_bytes / 0x1p20, device->subgroup_size,
+           device->has_timestamps ? "with" : "without");
+}
+
+/* The best first, as --backend vulkan would choose. Machines without are told why. */
+static void print_devices(void)
+{
+    helio_device_info devices[DEVICES_MOST];
+    uint32_t count;
+    printf("devices\n");
+    if (helio_device_list(DEVICES_MOST, devices, &count) != HELIO_OK) {
+        printf("  none: %s\n", helio_last_error());
+        return;
+    }
+    for (uint32_t i = 0; i < count && i < DEVICES_MOST; i++)
+        print_device(&devices[i]);
+}
+
 int command_info(const cli_options *options)
 {
     (void)options;
@@ -77,9 +110,14 @@ int command_info(const cli_options *options)
     printf("cores       %u logical\n", machine_cores());
     if (!print_isa())
         return message_failure("%s", helio_last_error());
+#ifdef HELIO_WITH_VULKAN
+    printf("backends    cpu vulkan\n");
+#else
     printf("backends    cpu\n");
+#endif
     printf("features\n");
     for (size_t i = 0; i < sizeof features / sizeof features[0]; i++)
         printf("  %-8s  %-3s  %s\n", features[i].name, features[i].present ? "yes" : "no", features[i].use);
+    print_devices();
     return EXIT_CODE_OK;
 }

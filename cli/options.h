@@ -123,7 +123,8 @@ typedef struct cli_options {
     reference_options truth; /* of reference */
 
     const char *backend;
-    uint32_t threads; /* 0: one per logical core */
+    const char *device; /* part of its name, or NULL */
+    uint32_t threads;   /* 0: one per logical core */
     bool quiet, verbose;
 
     bool help, man;

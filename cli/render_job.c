@@ -83,8 +83,22 @@ helio_renderer_desc render_job_describe(const render_job *job)
         .no_decorrelation = options->decorrelate[0] == 'n',
         .no_visibility = options->visibility[0] == 'n',
         .background = job->plan.background,
+        .device = job->device,
         .aovs = options->aovs,
     };
+}
+
+/* Only where a device is asked for. */
+static helio_status open_device(render_job *job)
+{
+    const cli_options *options = job->plan.options;
+    const helio_device_desc desc = {.name = options->device};
+    if (options->backend[0] != 'v')
+        return HELIO_OK;
+    helio_status status = helio_device_create(job->context, &desc, &job->device);
+    if (status == HELIO_OK && options->verbose)
+        message_note("computing on %s", helio_device_get_info(job->device).name);
+    return status;
 }
 
 static helio_status make_renderer(render_job *job)
@@ -130,9 +144,9 @@ int render_job_open_parts(render_job *job)
 
 int render_job_open_scene(render_job *job)
 {
-    static helio_status (*const steps[])(render_job *) = {make_renderer};
+    static helio_status (*const steps[])(render_job *) = {open_device, make_renderer};
     int code = render_job_open_parts(job);
-    return code == EXIT_CODE_OK ? run_steps(job, steps, 1) : code;
+    return code == EXIT_CODE_OK ? run_steps(job, steps, sizeof steps / sizeof steps[0]) : code;
 }
 
 int render_job_open(render_job *job, const cli_options *options)
@@ -152,6 +166,7 @@ void render_job_close(render_job *job)
 {
     frame_error_close(&job->error);
     helio_renderer_destroy(job->renderer);
+    helio_device_destroy(job->device);
     helio_scene_destroy(job->scene);
     if (job->mesh != NULL)
         helio_mesh_destroy(job->context, job->mesh);
@@ -248,6 +263,9 @@ helio_status render_job_render(render_job *job, uint64_t index, stats_frame *sta
     stats->pools_ms = info.pools_ms;
     stats->primary_ms = info.primary_ms;
     stats->shade_ms = info.shade_ms;
+    stats->has_device = job->device != NULL;
+    stats->upload_ms = info.upload_ms;
+    stats->read_back_ms = info.read_back_ms;
     stats->samples = info.samples;
     stats->samples_useful = info.samples_useful;
     if (*is_whole && job->plan.options->verbose)

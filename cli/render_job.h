@@ -12,6 +12,7 @@
 typedef struct render_job {
     render_plan plan;
     helio_context *context;
+    helio_device *device; /* that computes, for --backend vulkan; else NULL */
     helio_source *source;
     helio_source_info source_info;
     helio_environment *environment;

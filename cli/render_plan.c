@@ -68,8 +68,11 @@ static int choose_light(render_plan *plan, bool may_be_sequence)
 
 static int check_program(const cli_options *options)
 {
-    if (is(options->backend, "vulkan"))
-        return message_usage("--backend vulkan is not in this version; give auto or cpu");
+    const bool is_vulkan = is(options->backend, "vulkan");
+    if (is_vulkan && !is(options->visibility, "none"))
+        return message_usage("--backend vulkan traces no shadow rays yet; give --visibility none, or --backend cpu");
+    if (is_vulkan && options->aovs)
+        return message_usage("--backend vulkan makes no layers for --aovs; give --backend cpu");
     if (options->quiet && options->verbose)
         return message_usage("--quiet and --verbose exclude each other; give one of them");
     return EXIT_CODE_OK;
@@ -81,6 +84,8 @@ static void warn_of_idle_sampling(const render_plan *plan)
     const cli_options *options = plan->options;
     const char *strategy = helio_strategy_name(helio_strategy_resolve(plan->strategy));
     bool by_face = strncmp(strategy, "face", 4) == 0, has_brdf = strstr(strategy, "+brdf") != NULL;
+    if (options->device != NULL && !is(options->backend, "vulkan"))
+        message_warning("--device changes nothing with --backend %s", options->backend);
     if (options->no_beta && !by_face)
         message_warning("--no-beta changes nothing with --strategy %s", strategy);
     if (options->bins != 8 && strncmp(strategy, "product", 7) != 0)

@@ -43,6 +43,9 @@ static int write_stats(const render_sequence *sequence)
     const render_job *job = sequence->job;
     const cli_options *options = job->plan.options;
     const char *error = sequence->error[0] != 0 ? sequence->error : "stopped";
+    helio_device_info device = {0};
+    if (job->device != NULL)
+        device = helio_device_get_info(job->device);
     stats_summary summary = {
         .strategy = helio_strategy_name(helio_strategy_resolve(job->plan.strategy)),
         .spp = options->spp,
@@ -53,6 +56,7 @@ static int write_stats(const render_sequence *sequence)
         .passes = job->passes,
         .ev = (double)sequence->exposure,
         .skipped = sequence->skipped,
+        .device = job->device != NULL ? device.name : NULL,
         .error = sequence->failed ? error : NULL,
     };
     return stats_write(options->stats, &sequence->stats, &summary);

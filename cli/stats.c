@@ -28,6 +28,10 @@ static json_t *frame_object(const stats_frame *frame)
     json_object_set_new(object, "pools_ms", json_number(frame->pools_ms));
     json_object_set_new(object, "primary_ms", json_number(frame->primary_ms));
     json_object_set_new(object, "shade_ms", json_number(frame->shade_ms));
+    if (frame->has_device) {
+        json_object_set_new(object, "upload_ms", json_number(frame->upload_ms));
+        json_object_set_new(object, "read_back_ms", json_number(frame->read_back_ms));
+    }
     json_object_set_new(object, "write_ms", json_number(frame->write_ms));
     json_object_set_new(object, "total_ms", json_number(frame->total_ms));
     json_object_set_new(object, "samples", json_whole(frame->samples));
@@ -62,8 +66,8 @@ static json_t *summary_object(const stats_list *list, const stats_summary *summa
     json_object_set_new(object, "passes", json_whole(summary->passes));
     json_object_set_new(object, "ev", json_number(summary->ev));
     json_object_set_new(object, "size", json_pack("[oo]", json_whole(summary->width), json_whole(summary->height)));
-    json_object_set_new(object, "backend", json_string("cpu"));
-    json_object_set_new(object, "device", json_string(processor));
+    json_object_set_new(object, "backend", json_string(summary->device ? "vulkan" : "cpu"));
+    json_object_set_new(object, "device", json_string(summary->device ? summary->device : processor));
     json_object_set_new(object, "isa", json_string(summary->isa));
     json_object_set_new(object, "threads", json_whole(summary->threads));
     if (summary->error != NULL)

@@ -15,7 +15,10 @@ typedef struct stats_frame {
     /* What the frame took of the time of all: source_ms and write_ms are waits, for reading and writing, which go on
      * beside the rendering of sequences. */
     double source_ms, cube_ms, tables_ms, pools_ms, primary_ms, shade_ms, write_ms;
-    double total_ms; /* source to written picture, without the scene, which is loaded once */
+    bool has_device;                /* a graphics processor has rendered; these are by its clock, as are tables, pools
+                                       and shading: */
+    double upload_ms, read_back_ms; /* cube and points to it, and the picture back */
+    double total_ms;                /* source to written picture, without the scene, which is loaded once */
     uint64_t samples, samples_useful;
     uint64_t nan, infinite, negative; /* pixels of the source as stored */
     uint64_t out_of_gamut;            /* pixels that became negative when their colours were converted */
@@ -32,9 +35,10 @@ void stats_note_bad_pixels(stats_frame *frame, const helio_bad_pixels *stored, c
 typedef struct stats_summary {
     const char *strategy, *isa;
     uint32_t spp, width, height, threads, passes;
-    double ev;         /* stops that PNG and video get */
-    uint64_t skipped;  /* frames that an earlier run had made */
-    const char *error; /* why the sequence ended early; NULL: it did not */
+    double ev;          /* stops that PNG and video get */
+    uint64_t skipped;   /* frames that an earlier run had made */
+    const char *device; /* graphics processor that has rendered; NULL: the CPU has */
+    const char *error;  /* why the sequence ended early; NULL: it did not */
 } stats_summary;
 
 /* Grows by one entry for each frame. Start from {0}. */

@@ -222,8 +222,6 @@ static int check_words(const study_plan *plan)
     float aspect = (float)options->size[0] / (float)options->size[1];
     if (options->quiet && options->verbose)
         return message_usage("--quiet and --verbose exclude each other; give one of them");
-    if (is(options->backend, "vulkan"))
-        return message_usage("--backend vulkan is not in this version; give auto or cpu");
     if (plan->ground == HELIO_GROUND_SHADOW)
         return message_usage("study compares the light of surfaces, and --ground shadow is none; give none or plane");
     if (study_plan_has_quadrature(plan) && !is(options->study.visibility, "none"))

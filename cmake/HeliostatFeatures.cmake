@@ -93,3 +93,22 @@ if(HELIO_WITH_LCMS2)
 else()
     list(APPEND SOURCES src/eval/lab_absent.c)
 endif()
+
+if(HELIO_WITH_VULKAN)
+    find_package(Vulkan QUIET) # headers alone: the loader is looked for when a device is asked for
+    find_program(GLSLC glslc)
+    if(NOT Vulkan_INCLUDE_DIR OR NOT GLSLC)
+        message(FATAL_ERROR "Vulkan was not found: install libvulkan-dev and glslc, or build without it by "
+                            "-DHELIO_WITH_VULKAN=OFF.")
+    endif()
+    set(SHADERS rows marginals faces moments evenness pools tiles tile_light bins greatest lists draw_lists draw_bins shade
+        shade_tiles background)
+    include(HeliostatShaders)
+    list(APPEND SOURCES src/vulkan/bins.c src/vulkan/buffer.c src/vulkan/commands.c src/vulkan/copy_rate.c src/vulkan/device.c src/vulkan/device_choice.c
+         src/vulkan/functions.c src/vulkan/light.c src/vulkan/pipeline.c src/vulkan/points.c
+         src/vulkan/pools.c src/vulkan/renderer.c src/vulkan/tables.c)
+    list(APPEND FEATURE_DEFINITIONS HELIO_WITH_VULKAN=1)
+    list(APPEND FEATURE_LIBRARIES ${CMAKE_DL_LIBS})
+else()
+    list(APPEND SOURCES src/vulkan/device_absent.c)
+endif()

@@ -8,7 +8,7 @@ if(NOT JANSSON_FOUND)
 endif()
 
 set(PROGRAM_SOURCES
-    cli/asset.c cli/bench_camera.c cli/bench_cube.c cli/bench_curve.c cli/bench_estimate.c cli/bench_flops.c
+    cli/asset.c cli/bench_camera.c cli/bench_cube.c cli/bench_curve.c cli/bench_device.c cli/bench_estimate.c cli/bench_flops.c
     cli/bench_frame.c cli/bench_json.c cli/bench_light.c cli/bench_machine.c cli/bench_memcpy.c cli/bench_mesh.c
     cli/bench_peak.c cli/bench_plan.c cli/bench_pools.c cli/bench_rays.c cli/bench_result.c cli/bench_run.c
     cli/bench_scene.c cli/bench_series.c cli/bench_table.c cli/bench_team.c cli/command_bench.c cli/command_compare.c cli/command_convert.c cli/command_info.c

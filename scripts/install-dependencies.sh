@@ -31,6 +31,11 @@ build libavdevice-dev - cameras and test patterns
 build libjansson-dev - statistics in JSON
 build libcairo2-dev - figures
 build liblcms2-dev - differences of colours
+build libvulkan-dev - graphics processors
+build glslc glslc shaders
+test spirv-tools spirv-val shaders
+test mesa-vulkan-drivers - a graphics processor in software
+test vulkan-validationlayers - the use of graphics processors
 test libcmocka-dev - tests
 test g++ g++ testing the headers in C++
 ci clang clang a second compiler

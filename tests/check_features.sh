@@ -10,7 +10,7 @@ cc=$2
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
-for feature in OPENEXR PNG JPEG ASSIMP EMBREE FFMPEG LCMS2 CAIRO; do
+for feature in OPENEXR PNG JPEG ASSIMP EMBREE FFMPEG LCMS2 CAIRO VULKAN; do
     echo "-- without $feature"
     build=$folder/$feature
     cmake -S "$source" -B "$build" -G Ninja -DCMAKE_C_COMPILER="$cc" -DHELIO_WERROR=ON -DBUILD_TESTING=ON \

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 /* ---- memory ---- */
@@ -144,4 +145,33 @@ static int remove_entry(const char *path, const struct stat *status, int kind, s
 void remove_directory(const char *path)
 {
     assert_int_equal(nftw(path, remove_entry, 8, FTW_DEPTH | FTW_PHYS), 0);
+}
+
+/* ---- meshes ---- */
+
+helio_mesh *make_unit_sphere(helio_context *context)
+{
+    enum { RINGS = 12, SECTORS = 16 };
+    static float positions[(RINGS + 1) * (SECTORS + 1)][3];
+    static uint32_t triangles[RINGS * SECTORS * 2][3];
+    for (int i = 0; i <= RINGS; i++)
+        for (int j = 0; j <= SECTORS; j++) {
+            double polar = 3.14159265 * i / RINGS, angle = 2 * 3.14159265 * j / SECTORS;
+            float *p = positions[i * (SECTORS + 1) + j];
+            p[0] = (float)(sin(polar) * cos(angle));
+            p[1] = (float)cos(polar);
+            p[2] = (float)(sin(polar) * sin(angle));
+        }
+    for (uint32_t k = 0; k < RINGS * SECTORS; k++) {
+        uint32_t corner = k / SECTORS * (SECTORS + 1) + k % SECTORS, below = corner + SECTORS + 1;
+        memcpy(triangles[2 * k], (uint32_t[]){corner, corner + 1, below}, sizeof triangles[0]);
+        memcpy(triangles[2 * k + 1], (uint32_t[]){corner + 1, below + 1, below}, sizeof triangles[0]);
+    }
+    const helio_mesh_desc desc = {.vertex_count = (RINGS + 1) * (SECTORS + 1),
+                                  .triangle_count = RINGS * SECTORS * 2,
+                                  .positions = positions[0],
+                                  .triangles = triangles[0]};
+    helio_mesh *mesh;
+    assert_ok(helio_mesh_create(context, &desc, &mesh));
+    return mesh;
 }

@@ -16,6 +16,7 @@
 
 #include <heliostat/core.h>
 #include <heliostat/environment.h>
+#include <heliostat/scene.h>
 
 #include <stdatomic.h>
 
@@ -61,6 +62,11 @@ double chi_square_tail(const double *observed, const double *expected, size_t bi
 /* An environment with a cube of size R, updated once with rgb: [height][width][3]. Fails the test if that cannot be. */
 helio_environment *make_environment(helio_context *context, helio_layout layout, uint32_t width, uint32_t height,
                                     uint32_t cube_size, const float *rgb, helio_environment_info *info);
+
+/* ---- meshes ---- */
+
+/* A unit sphere of quadrilaterals, each in two triangles. */
+helio_mesh *make_unit_sphere(helio_context *context);
 
 /* ---- time ---- */
 

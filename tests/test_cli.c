@@ -37,7 +37,7 @@ static bool same_bytes(const char *path, const char *other_path)
     "--background=env --exposure=-1.5 --tonemap=clip --stats=all.json --max-pixels=1 "                                 \
     "--frames=0..0 --day-frames=9 --on-missing=hold --transfer=pq --fps=30 --codec=ffv1 --quality=0.5 --hdr "          \
     "--contact-sheet=sheet.png --reference=reference.pfm --resume --seed-mode=frame "                                  \
-    "--max-mesh-memory=300 --max-mesh-seconds=60 --backend=cpu --threads=2 --verbose"
+    "--max-mesh-memory=300 --max-mesh-seconds=60 --backend=cpu --device=any --threads=2 --verbose"
 
 /* Is --name there as a word of its own? */
 static bool mentions(const char *text, const char *name)
@@ -235,7 +235,10 @@ static const struct {
     {"render --ground grass", "none, plane or shadow"},
     {"render --visibility all", "none or ray"},
     {"render --decorrelate blue", "hash or none"},
-    {"render --backend vulkan", "vulkan"},
+    {"render --backend vulkan", "visibility"},
+    {"render --backend vulkan --visibility none --aovs", "aovs"},
+    {"samples --backend vulkan", "vulkan"},
+    {"bench --stages device", "backend"},
     {"render --backend gpu", "gpu"},
     {"render --quiet --verbose", "--verbose"},
     {"render --ground shadow --visibility none", "--visibility ray"},

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { WIDTH = 72, HEIGHT = 50, RINGS = 12, SECTORS = 16, MAP = 32 };
+enum { WIDTH = 72, HEIGHT = 50, MAP = 32 };
 
 typedef struct stage {
     helio_context *context;
@@ -20,33 +20,6 @@ typedef struct stage {
     helio_frame_desc frame;
 } stage;
 
-/* A unit sphere of quadrilaterals, each in two triangles. */
-static helio_mesh *make_sphere(helio_context *context)
-{
-    static float positions[(RINGS + 1) * (SECTORS + 1)][3];
-    static uint32_t triangles[RINGS * SECTORS * 2][3];
-    for (int i = 0; i <= RINGS; i++)
-        for (int j = 0; j <= SECTORS; j++) {
-            double polar = 3.14159265 * i / RINGS, angle = 2 * 3.14159265 * j / SECTORS;
-            float *p = positions[i * (SECTORS + 1) + j];
-            p[0] = (float)(sin(polar) * cos(angle));
-            p[1] = (float)cos(polar);
-            p[2] = (float)(sin(polar) * sin(angle));
-        }
-    for (uint32_t k = 0; k < RINGS * SECTORS; k++) {
-        uint32_t corner = k / SECTORS * (SECTORS + 1) + k % SECTORS, below = corner + SECTORS + 1;
-        memcpy(triangles[2 * k], (uint32_t[]){corner, corner + 1, below}, sizeof triangles[0]);
-        memcpy(triangles[2 * k + 1], (uint32_t[]){corner + 1, below + 1, below}, sizeof triangles[0]);
-    }
-    const helio_mesh_desc desc = {.vertex_count = (RINGS + 1) * (SECTORS + 1),
-                                  .triangle_count = RINGS * SECTORS * 2,
-                                  .positions = positions[0],
-                                  .triangles = triangles[0]};
-    helio_mesh *mesh;
-    assert_ok(helio_mesh_create(context, &desc, &mesh));
-    return mesh;
-}
-
 static stage make_stage(uint32_t threads, helio_ground ground, uint32_t aa, uint32_t spp)
 {
     static float map[MAP / 2 * MAP * 3];
@@ -54,7 +27,7 @@ static stage make_stage(uint32_t threads, helio_ground ground, uint32_t aa, uint
     for (int i = 0; i < MAP / 2 * MAP * 3; i++)
         map[i] = i % 97 == 0 ? 40.0f : 0.2f + (float)(i % 11) * 0.1f;
     s.environment = make_environment(s.context, HELIO_LAYOUT_LATLONG, MAP, MAP / 2, 16, map, NULL);
-    s.mesh = make_sphere(s.context);
+    s.mesh = make_unit_sphere(s.context);
     const helio_scene_desc scene = {.mesh = s.mesh, .ground = ground};
     assert_ok(helio_scene_create(s.context, &scene, &s.scene));
     const helio_renderer_desc renderer = {.environment = s.environment,

@@ -47,6 +47,7 @@ typedef enum helio_status {
     HELIO_ERR_UNSUPPORTED = -3, /* not built in, or this machine cannot do it */
     HELIO_ERR_IO = -4,          /* a file is missing, unreadable or cannot be written */
     HELIO_ERR_DATA = -5,        /* a file was read but what it holds is malformed or not usable */
+    HELIO_ERR_DEVICE = -6,      /* a graphics processor or its driver failed, or was lost: destroy what is on it */
 } helio_status;
 
 /* "HELIO_ERR_MEMORY" and so on; static, never NULL. */

@@ -8,6 +8,7 @@
 
 #include <heliostat/comparison.h>
 #include <heliostat/core.h>
+#include <heliostat/device.h>
 #include <heliostat/environment.h>
 #include <heliostat/image.h>
 #include <heliostat/reference.h>

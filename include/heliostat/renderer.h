@@ -6,6 +6,7 @@
 #define HELIOSTAT_RENDERER_H
 
 #include <heliostat/core.h>
+#include <heliostat/device.h>
 #include <heliostat/environment.h>
 #include <heliostat/image.h>
 #include <heliostat/sampling.h>
@@ -40,8 +41,11 @@ typedef struct helio_renderer_desc {
     bool no_decorrelation; /* all pixels read the same windows of the pools: shows bands */
     bool no_visibility;    /* light passes through everything, the paper's setting; default: shadow rays */
     helio_background background;
-    bool aovs; /* also fill albedo, normal, position and depth: means over the camera samples that
-                                       hit object or plane (a shadow catcher is not hit) */
+    helio_device *device; /* computes tables, pools, light and background; it must outlive the renderer. Camera rays are
+                             the CPU's, and shadow rays and aovs there are none: HELIO_ERR_UNSUPPORTED without
+                             no_visibility, and with aovs. Default: the CPU computes all */
+    bool aovs;            /* also fill albedo, normal, position and depth: means over the camera samples that
+                                                  hit object or plane (a shadow catcher is not hit) */
 } helio_renderer_desc;
 
 typedef struct helio_frame_desc {
@@ -52,13 +56,19 @@ typedef struct helio_frame_desc {
      * none. */
     bool (*progress)(void *user, float done);
     void *user;
-    bool retrace; /* trace the camera rays even if the previous frame's still hold: to measure them */
+    bool no_picture; /* where a device computes, leave the picture there: helio_renderer_picture() keeps what it had.
+                        The frame may then still be on its way on return, two frames are at the most, and the info is
+                        that of the latest frame that is over */
+    bool retrace;    /* trace the camera rays even if the previous frame's still hold: to measure them */
 } helio_frame_desc;
 
 typedef struct helio_frame_info {
     double tables_ms, pools_ms, primary_ms, shade_ms; /* time in each stage, all passes; monotonic clock. Threads
                                                          divide camera rays and shading by tiles: the time of both is
-                                                         shared out in proportion to what threads spent on each. */
+                                                         shared out in proportion to what threads spent on each.
+                                                         With a device all but camera rays is by its own clock, 0
+                                                         where it has none. */
+    double upload_ms, read_back_ms;                   /* with a device: cube and points to it, and the picture back */
     uint32_t passes;                                  /* how often the pools were redrawn */
     uint64_t samples;                                 /* light + BRDF samples taken */
     uint64_t samples_useful;                          /* above the horizon, with light, with a BRDF > 0 */

@@ -32,6 +32,7 @@ const char *helio_status_name(helio_status status)
     case HELIO_ERR_UNSUPPORTED: return "HELIO_ERR_UNSUPPORTED";
     case HELIO_ERR_IO: return "HELIO_ERR_IO";
     case HELIO_ERR_DATA: return "HELIO_ERR_DATA";
+    case HELIO_ERR_DEVICE: return "HELIO_ERR_DEVICE";
     }
     return "unknown status";
 }

@@ -9,6 +9,7 @@
 #include "env/environment.h"
 #include "sampling/estimate.h"
 #include "sampling/strategy.h"
+#include "vulkan/renderer.h"
 
 enum { MAX_SIZE = 16384, MAX_SPP = 1 << 20, MAX_AA = 4096 };
 
@@ -98,10 +99,11 @@ static helio_status create_parts(helio_renderer *renderer)
         .height = desc->height,
         .shows_background = desc->background == HELIO_BACKGROUND_ENVIRONMENT,
         .has_surfaces = desc->aovs,
-        .has_steps = frame_step_count(renderer) > 1 || renderer->extras.keeps_sums,
+        .has_steps = desc->device == NULL && (frame_step_count(renderer) > 1 || renderer->extras.keeps_sums),
     };
     HELIO_TRY(film_create(renderer->context, &film, &renderer->film));
-    return hits_create(renderer->context, desc->scene, desc->width, desc->height, &renderer->hits);
+    HELIO_TRY(hits_create(renderer->context, desc->scene, desc->width, desc->height, &renderer->hits));
+    return desc->device != NULL ? vulkan_renderer_create(renderer) : HELIO_OK;
 }
 
 helio_status renderer_create(helio_context *context, const helio_renderer_desc *given, const renderer_extras *extras,
@@ -139,6 +141,7 @@ void helio_renderer_destroy(helio_renderer *renderer)
     if (renderer == NULL)
         return;
     helio_context *context = renderer->context;
+    vulkan_renderer_destroy(renderer->vulkan);
     hits_destroy(context, &renderer->hits);
     film_destroy(context, &renderer->film);
     helio_pools_destroy(renderer->pools);
@@ -217,23 +220,32 @@ struct frame frame_begin(const helio_renderer *renderer, const camera_frame *cam
     };
 }
 
-helio_status helio_renderer_render(helio_renderer *renderer, const helio_frame_desc *desc, helio_frame_info *out)
+static helio_status render_on_cpu(helio_renderer *renderer, const helio_frame_desc *desc, helio_frame_info *info)
 {
-    if (renderer == NULL || desc == NULL)
-        return fail(HELIO_ERR_ARGUMENT, "helio_renderer_render needs a renderer and a desc");
-    helio_frame_info info = {0};
     camera_frame camera;
     HELIO_TRY(camera_frame_create(&desc->camera, (float)renderer->desc.width / (float)renderer->desc.height, &camera));
     double start = frame_milliseconds();
     HELIO_TRY(helio_tables_update(renderer->tables));
-    info.tables_ms = frame_milliseconds() - start;
+    info->tables_ms = frame_milliseconds() - start;
     struct frame frame = frame_begin(renderer, &camera, desc->seed);
-    HELIO_TRY(run_steps(renderer, &frame, desc, &info));
-    info.samples = frame.samples;
-    info.samples_useful = frame.useful;
-    info.rays = frame.rays;
-    info.points = frame.points;
-    info.camera_rays = frame.camera_rays;
+    HELIO_TRY(run_steps(renderer, &frame, desc, info));
+    info->samples = frame.samples;
+    info->samples_useful = frame.useful;
+    info->rays = frame.rays;
+    info->points = frame.points;
+    info->camera_rays = frame.camera_rays;
+    return HELIO_OK;
+}
+
+helio_status helio_renderer_render(helio_renderer *renderer, const helio_frame_desc *desc, helio_frame_info *out)
+{
+    helio_frame_info info = {0};
+    if (renderer == NULL || desc == NULL)
+        return fail(HELIO_ERR_ARGUMENT, "helio_renderer_render needs a renderer and a desc");
+    if (renderer->vulkan != NULL)
+        HELIO_TRY(vulkan_renderer_render(renderer, desc, &info));
+    else
+        HELIO_TRY(render_on_cpu(renderer, desc, &info));
     if (out != NULL)
         *out = info;
     return HELIO_OK;

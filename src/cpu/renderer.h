@@ -36,7 +36,8 @@ struct helio_renderer {
     helio_tables *tables;
     helio_pools *pools;
     struct film film;
-    struct hits hits; /* of the current camera sample */
+    struct hits hits;               /* of the current camera sample */
+    struct vulkan_renderer *vulkan; /* where a device computes; else NULL */
 };
 
 /* helio_renderer_create() with extras. */

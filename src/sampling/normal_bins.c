@@ -5,11 +5,8 @@
 #include "sampling/kernels.h"
 
 enum {
-    LIST_LEAST = 8,       /* samples of a tile that gives light: as many as a sharp lobe may want of it */
-    LIST_FACTOR = 4,      /* samples of a tile for each that a pool takes */
     LISTS_PER_POOL = 128, /* samples of all tiles together, at most, for each of a pool */
-    BINS_LOOKED_AT = 48,
-    TILES_AT_ONCE = 16, /* the piece of work of a thread */
+    TILES_AT_ONCE = 16,   /* the piece of work of a thread */
 };
 
 /* ---- creation ---- */
@@ -139,7 +136,7 @@ static void find_greatest(void *data, size_t piece)
     list_work *work = data;
     const normal_bins *b = work->bins;
     uint32_t first = (uint32_t)piece * TILES_AT_ONCE, end = first + TILES_AT_ONCE;
-    uint32_t stride = b->count / BINS_LOOKED_AT | 1; /* odd, so that it meets all columns of cells */
+    const uint32_t stride = normal_bins_step(b);
     end = end < b->tiles->count ? end : b->tiles->count;
     for (uint32_t bin = 0; bin < b->count; bin += stride)
         for (uint32_t i = first; i < end; i++)

@@ -12,6 +12,13 @@
 
 enum { NORMAL_BINS_DEFAULT = 8, NORMAL_BINS_MOST = 32 };
 
+/* How lists of the tiles are sized. */
+enum {
+    LIST_LEAST = 8,  /* samples of a tile that gives light: as many as a sharp lobe may want of it */
+    LIST_FACTOR = 4, /* samples of a tile for each that a pool takes */
+    BINS_LOOKED_AT = 48,
+};
+
 /* What a cell of normals weighs tiles with. */
 typedef struct normal_bin {
     vec3 centre;
@@ -69,6 +76,12 @@ static inline float normal_bin_cosine(const normal_bin *bin, float cosine)
     risen = risen > 0.0f ? risen : 0.0f;
     float bent = risen * risen / (4.0f * edge); /* meets the cosine at `edge`, where both rise by 1 */
     return (cosine < edge ? bent : cosine) + 0.01f * within;
+}
+
+/* From one bin that is looked at to the next: odd, so that it meets all columns of cells. */
+static inline uint32_t normal_bins_step(const normal_bins *b)
+{
+    return b->count / BINS_LOOKED_AT | 1;
 }
 
 /* Prefix sums of a bin: [tiles + 1]. */

@@ -1,0 +1,59 @@
+#version 460
+// SPDX-License-Identifier: MIT
+//
+// A bin of normals for each work group: prefix sums of the weights that it gives to the tiles. As weigh_tiles() in
+// src/sampling/tiles_kernel.c, to the bit.
+#include "common.glsl"
+#include "fixed_point.glsl"
+#include "scan.glsl"
+
+// Divisions of floats, which devices round as they like, are made in double and so come out right.
+float divide(float a, float b)
+{
+    return float(double(a) / double(b));
+}
+
+// See normal_bin_cosine().
+float bin_cosine(float reach, float cosine)
+{
+    precise float edge = 0.6 * reach;
+    precise float within = max(cosine + reach, 0.0), risen = max(cosine + edge, 0.0);
+    precise float square = risen * risen, bent = divide(square, 4.0 * edge);
+    precise float result = (cosine < edge ? bent : cosine) + 0.01 * within;
+    return result;
+}
+
+float weigh(vec3 centre, float reach, uint position)
+{
+    vec4 tile = STATE.tiles.at[position];
+    precise float cosine = centre.x * tile.x + centre.y * tile.y + centre.z * tile.z;
+    precise float weight = tile.w * bin_cosine(reach, cosine);
+    return weight;
+}
+
+void main()
+{
+    begin_with_state();
+    const uint bin = gl_WorkGroupID.x, count = STATE.tile_count, to = bin * (count + 1u);
+    const vec4 numbers = STATE.bins.at[bin];
+    const vec3 centre = numbers.xyz;
+    const float reach = numbers.w;
+    uint largest = 0u, sum = 0u;
+    for (uint i = gl_LocalInvocationID.x; i < count; i += gl_WorkGroupSize.x)
+        largest = max(largest, floatBitsToUint(weigh(centre, reach, i)));
+    const int exponent = fixed_point_exponent(greatest_in_group(largest), summand_bits(count));
+    const float factor = power_of_two(exponent);
+    const uint each = (count + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x;
+    const uint begin = min(each * gl_LocalInvocationID.x, count), end = min(begin + each, count);
+    for (uint i = begin; i < end; i++)
+        sum += fixed_point_integer(weigh(centre, reach, i), factor);
+    uint total, before = sum_before_in_group(sum, total);
+    for (uint i = begin; i < end; i++) {
+        STATE.bin_sums.at[to + i] = before;
+        before += fixed_point_integer(weigh(centre, reach, i), factor);
+    }
+    if (gl_LocalInvocationID.x != 0u)
+        return;
+    STATE.bin_sums.at[to + count] = total;
+    STATE.bin_shares.at[bin] = total != 0u ? divide(1.0, float(total)) : 0.0;
+}

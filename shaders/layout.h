@@ -1,0 +1,209 @@
+/* SPDX-License-Identifier: MIT
+ * layout.h - what the host and the shaders must agree on: constants and structures in memory. Read by C and by GLSL.
+ *
+ * Shaders reach all memory by addresses, so that no binding limits its size: the host pushes the addresses of a state,
+ * which stays the same, and of the numbers of a step. Members are in an order in which neither language pads. */
+#ifndef HELIOSTAT_SHADERS_LAYOUT_H
+#define HELIOSTAT_SHADERS_LAYOUT_H
+
+#ifdef VULKAN
+#define ADDRESS(type, name) type name
+#define UINT uint
+#define INT int
+#define FLOAT float
+#define DOUBLE double
+#define STRUCT
+#else
+#include <stdint.h>
+#define ADDRESS(type, name) uint64_t name
+#define UINT uint32_t
+#define INT int32_t
+#define FLOAT float
+#define DOUBLE double
+#define STRUCT struct
+#endif
+
+#define LAYOUT_FACES 6
+#define LAYOUT_TECHNIQUES 7 /* as in strategy.h: the last is the surface's */
+#define LAYOUT_TILES_PER_EDGE 16
+#define LAYOUT_TILES_MOST (LAYOUT_FACES * LAYOUT_TILES_PER_EDGE * LAYOUT_TILES_PER_EDGE)
+
+/* layout_state.light and .surface: strategy_light and strategy_surface. */
+#define LAYOUT_LIGHT_NONE 0
+#define LAYOUT_LIGHT_WHOLE 1
+#define LAYOUT_LIGHT_FACES 2
+#define LAYOUT_LIGHT_BINS 3
+#define LAYOUT_SURFACE_NONE 0
+#define LAYOUT_SURFACE_COSINE 1
+#define LAYOUT_SURFACE_BRDF 2
+
+/* Materials, as bits: a pipeline is built for those that a scene has. */
+#define LAYOUT_DIFFUSE 0
+#define LAYOUT_PHONG 1
+#define LAYOUT_GGX 2
+
+/* A pool holds two vectors for each sample, in planes one after the other: its direction with its density given the
+ * pool, and radiance / density with nothing. */
+#define LAYOUT_POOL_PLANES 2
+
+/* Streams of random numbers of a point, see gathering.h. */
+#define LAYOUT_STREAM_ROUNDING 1
+#define LAYOUT_STREAM_SURFACE 2
+#define LAYOUT_STREAM_WINDOW 3
+#define LAYOUT_STREAM_BIN 4
+
+/* What camera rays meet, see hits.h. */
+#define LAYOUT_HIT_OBJECT 1
+#define LAYOUT_HIT_PLANE 2
+
+/* sum x 2^-exponent, see row_sum in tables.h. */
+struct layout_row_sum {
+    UINT sum;
+    INT exponent;
+};
+
+/* What is known of the map as a whole. */
+struct layout_sums {
+    DOUBLE flux[LAYOUT_FACES];
+    STRUCT layout_row_sum weights[LAYOUT_FACES]; /* of the faces */
+    UINT faces[LAYOUT_FACES + 1];                /* prefix sums of these */
+    UINT uneven_faces;                           /* where it pays to aim at light, see evenness.h */
+};
+
+struct layout_material {
+    FLOAT diffuse[3];
+    UINT kind;
+    FLOAT specular[3];
+    FLOAT exponent;
+    FLOAT metallic;
+    FLOAT roughness;
+    UINT padding[2];
+};
+
+/* What a camera ray met. */
+struct layout_point {
+    FLOAT normal[3];
+    UINT pixel;
+    FLOAT geometric_normal[3];
+    UINT material; /* index */
+    FLOAT view[3]; /* towards the eye */
+    UINT hit;
+};
+
+/* Counted by shaders; 64 bits in two halves. */
+struct layout_counts {
+    UINT samples[2];
+    UINT useful[2];
+};
+
+#ifdef VULKAN
+layout(buffer_reference, std430, buffer_reference_align = 4) buffer floats
+{
+    float at[];
+};
+layout(buffer_reference, std430, buffer_reference_align = 8) buffer doubles
+{
+    double at[];
+};
+layout(buffer_reference, std430, buffer_reference_align = 4) buffer uints
+{
+    uint at[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer texels
+{
+    vec3 at[];
+};
+layout(buffer_reference, std430, buffer_reference_align = 8) buffer row_sums
+{
+    layout_row_sum at[];
+};
+layout(buffer_reference, std430, buffer_reference_align = 8) buffer sums_of_map
+{
+    layout_sums all;
+};
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer vectors
+{
+    vec4 at[];
+};
+layout(buffer_reference, std430, buffer_reference_align = 4) buffer counts_of_frame
+{
+    layout_counts all;
+};
+#endif
+
+/* Memory, and sizes that stay the same. The shapes are those of the CPU: see tables.h, pools.h, tiles.h and
+ * normal_bins.h. */
+struct layout_state {
+    ADDRESS(texels, cube);         /* [6][R][R][3] */
+    ADDRESS(floats, solid_angles); /* [R][R] */
+    ADDRESS(uints, rows);          /* [6][R][R + 1] */
+    ADDRESS(uints, marginals);     /* [6][R + 1] */
+    ADDRESS(floats, row_densities);
+    ADDRESS(row_sums, weights);    /* [6][R] */
+    ADDRESS(row_sums, fluxes);     /* the same array unless the weighting is the paper's */
+    ADDRESS(sums_of_map, sums);
+    ADDRESS(vectors, pools);       /* [LAYOUT_POOL_PLANES][pool_stride] */
+    ADDRESS(uints, tile_grid);     /* [tiles]: (face x T + row) x T + column of the tile at a position */
+    ADDRESS(uints, tile_positions); /* [6][T][T]: the way back */
+    ADDRESS(vectors, tiles);       /* [tiles]: direction to the centre, light in proportion */
+    ADDRESS(row_sums, tile_totals); /* [tiles] */
+    ADDRESS(uints, tile_sums);     /* [tiles][tile_stride] */
+    ADDRESS(floats, segment_densities); /* [6][R][T] */
+    ADDRESS(vectors, bins);        /* [bins]: direction to the centre, reach */
+    ADDRESS(uints, bin_sums);      /* [bins][tiles + 1] */
+    ADDRESS(floats, bin_shares);   /* [bins] */
+    ADDRESS(floats, greatest);     /* [tiles] */
+    ADDRESS(uints, list_starts);   /* [tiles + 1] */
+    ADDRESS(vectors, listed);      /* [list_capacity][2]: as in pools, given the tile */
+    ADDRESS(doubles, moments);     /* [6][T][T][3]: see tile_moments in evenness.c */
+    UINT size;                     /* R */
+    UINT weighting;                /* helio_weighting */
+    UINT light, surface;           /* parts of the strategy */
+    UINT pool_count, techniques, pool_length, pool_stride;
+    UINT tiles_per_edge, tile_count, tile_stride, bins_per_edge;
+    UINT bin_count, list_capacity;
+    FLOAT shake, tile_radius, tile_edge; /* of tiles: the greatest angle from the centre, and its sine rounded up */
+    UINT is_automatic;      /* the strategy may be left where the light is even */
+};
+
+/* Numbers of a step of a frame. */
+struct layout_step {
+    ADDRESS(vectors, points);                /* [point_count][3]: struct layout_point */
+    ADDRESS(vectors, materials);             /* [...][3]: struct layout_material */
+    ADDRESS(vectors, picture);               /* [height][width]: red, green, blue, alpha */
+    ADDRESS(floats, object);                 /* [height][width] */
+    ADDRESS(uints, misses);                  /* [miss_count]: pixels that show the background */
+    ADDRESS(counts_of_frame, counts);
+    FLOAT map_axes[9];     /* see environment.h */
+    FLOAT intensity;
+    FLOAT background[9];   /* corner, across, down: see background.h */
+    UINT pool_seed;        /* of the pass */
+    UINT point_seed;       /* of the step */
+    UINT same_seed;        /* all points have it */
+    UINT samples;          /* of a point */
+    FLOAT brdf_share;
+    UINT no_beta;
+    UINT point_count, miss_count;
+    UINT width, height;
+    UINT camera_seed;      /* of the frame, for positions in the pixels ... */
+    UINT camera_sample;    /* ... of this sample; UINT_MAX: the centre */
+    UINT is_first, is_last;
+    UINT shows_background;
+    FLOAT weight;          /* of all samples when the step is over */
+    UINT padding;
+};
+
+/* What is pushed. */
+struct layout_push {
+    UINT state[2], step[2]; /* addresses */
+    UINT parameter[4];      /* of a dispatch */
+};
+
+#ifndef VULKAN
+_Static_assert(sizeof(struct layout_sums) == 128, "as in the shaders");
+_Static_assert(sizeof(struct layout_material) == 48 && sizeof(struct layout_point) == 48, "as in the shaders");
+_Static_assert(sizeof(struct layout_state) == 22 * 8 + 18 * 4, "as in the shaders");
+_Static_assert(sizeof(struct layout_step) == 6 * 8 + 36 * 4, "as in the shaders");
+_Static_assert(sizeof(struct layout_push) == 32, "as in the shaders");
+#endif
+#endif

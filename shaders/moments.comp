@@ -1,0 +1,40 @@
+#version 460
+// SPDX-License-Identifier: MIT
+//
+// A tile for each work group: solid angle, light and its square. As moments_of() in src/sampling/evenness.c.
+#include "common.glsl"
+#include "random.glsl"
+#include "cube.glsl"
+#include "tables.glsl"
+#include "tiles.glsl"
+
+shared double parts[3u * 256u];
+
+void main()
+{
+    begin_with_state();
+    const uint edge = STATE.tiles_per_edge, grid = gl_WorkGroupID.x, thread = gl_LocalInvocationID.x;
+    const uint row = grid / edge % edge, column = grid % edge, face = grid / (edge * edge);
+    const uint top = tile_start(row), left = tile_start(column), columns = tile_start(column + 1u) - left;
+    const uint count = (tile_start(row + 1u) - top) * columns;
+    double angles = 0.0LF, light = 0.0LF, squares = 0.0LF;
+    for (uint i = thread; i < count; i += gl_WorkGroupSize.x) {
+        const uint y = top + i / columns, x = left + i % columns;
+        const vec3 rgb = texel_radiance(texel_index(face, y, x));
+        precise float luminance = 0.2126 * rgb.r + 0.7152 * rgb.g + 0.0722 * rgb.b;
+        const double angle = double(STATE.solid_angles.at[y * STATE.size + x]), value = double(luminance);
+        angles += angle;
+        light += value * angle;
+        squares += value * value * angle;
+    }
+    parts[3u * thread] = angles;
+    parts[3u * thread + 1u] = light;
+    parts[3u * thread + 2u] = squares;
+    barrier();
+    if (thread >= 3u)
+        return;
+    double sum = 0.0LF;
+    for (uint i = 0u; i < gl_WorkGroupSize.x; i++)
+        sum += parts[3u * i + thread];
+    STATE.moments.at[3u * grid + thread] = sum;
+}

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+// point.glsl - what a point needs before its first sample: its BRDF in the map's space, expected and realised counts,
+// windows of the pools. As points_kernel.c and estimate.c, in double where these are, so that both take the same samples.
+// Needs brdf.glsl, tiles.glsl and the constants LIGHT and SURFACE.
+
+struct shading_point {
+    uint pixel, hit, material_index;
+    vec3 normal, geometric_normal, view; // in world space
+};
+
+struct prepared_point {
+    brdf surface;
+    vec3 geometric_normal;
+    uint end[LAYOUT_FACES];       // of the samples of each light technique, counted through all of them ...
+    uint from[LAYOUT_FACES];      // ... and what is added to such a number to get that of the sample in the pools
+    float expected[LAYOUT_FACES]; // number of samples
+    float surface_expected;
+    uint surface_count, surface_seed, bin, seed;
+};
+
+// A point that shines reads no pool of a bin, but weighs the tiles itself: in another pass, shade_tiles.comp. Where the
+// light is even the surface has all samples.
+bool weighs_tiles(prepared_point p)
+{
+    return LIGHT == LAYOUT_LIGHT_BINS && p.surface_expected > 0.0 && p.expected[0] > 0.0;
+}
+
+const uint TECHNIQUES = LIGHT == LAYOUT_LIGHT_FACES ? LAYOUT_FACES : LIGHT == LAYOUT_LIGHT_NONE ? 0u : 1u;
+
+shading_point read_point(uint index)
+{
+    const vec4 a = STEP.points.at[3u * index], b = STEP.points.at[3u * index + 1u], c = STEP.points.at[3u * index + 2u];
+    return shading_point(floatBitsToUint(a.w), floatBitsToUint(c.w), floatBitsToUint(b.w), a.xyz, b.xyz, c.xyz);
+}
+
+vec3 turned(vec3 v)
+{
+    precise vec3 result = vec3(STEP.map_axes[0], STEP.map_axes[1], STEP.map_axes[2]) * v.x +
+                          vec3(STEP.map_axes[3], STEP.map_axes[4], STEP.map_axes[5]) * v.y +
+                          vec3(STEP.map_axes[6], STEP.map_axes[7], STEP.map_axes[8]) * v.z;
+    return result;
+}
+
+// ---- shares and expected counts ----
+
+// 0 for a lobe as wide as the sky, 1 for a mirror: see point_tiles.c.
+float narrowness(brdf b)
+{
+    const float width = is_ggx(b.kind) ? 2.0 * sqrt(b.shape) : 1.665 / sqrt(max(b.shape, 1.0));
+    return STATE.tile_radius / (STATE.tile_radius + width / 1.25);
+}
+
+// Bins know light and cosine, and tiles light and BRDF, so that BRDF samples have only the lobe to look after, the more
+// the narrower it is. The share given is what that is at an even split.
+float share_of_need(shading_point p, scene_material m)
+{
+    const brdf b = prepare_brdf(m, p.normal, lift_view(p.normal, p.view));
+    const float need = m.kind != LAYOUT_DIFFUSE ? b.specular_share * narrowness(b) : 0.0;
+    const float for_surface = need * STEP.brdf_share, for_light = (1.0 - need) * (1.0 - STEP.brdf_share);
+    return for_surface > 0.0 ? for_surface / (for_surface + for_light) : 0.0;
+}
+
+// Is the light so even that it does not pay to aim at it?
+bool is_even()
+{
+    return LIGHT == LAYOUT_LIGHT_BINS && STATE.is_automatic != 0u && STATE.sums.all.uneven_faces == 0u;
+}
+
+// Part of the samples that the surface technique takes.
+float surface_share(shading_point p, scene_material m)
+{
+    if (LIGHT == LAYOUT_LIGHT_NONE || is_even())
+        return 1.0;
+    if (SURFACE == LAYOUT_SURFACE_NONE)
+        return 0.0;
+    return LIGHT == LAYOUT_LIGHT_BINS ? share_of_need(p, m) : STEP.brdf_share;
+}
+
+// How much, at most, a face can light a surface with this normal: strategy_beta().
+float beta_of(uint face, vec3 normal)
+{
+    const uint axis = face / 2u;
+    const float along = (face & 1u) == 0u ? normal[axis] : -normal[axis];
+    precise float beta = along + abs(normal[axis == 0u ? 1 : 0]) + abs(normal[axis == 2u ? 1 : 2]);
+    return max(beta, 0.0);
+}
+
+double worth_of_face(uint face, vec3 normal)
+{
+    const float beta = beta_of(face, normal);
+    return (STEP.no_beta != 0u ? (beta > 0.0 ? 1.0LF : 0.0LF) : double(beta)) * STATE.sums.all.flux[face];
+}
+
+// Writes worths of the light techniques and returns their sum.
+double find_worths(vec3 normal, uint bin, out double worths[LAYOUT_FACES])
+{
+    double total = 0.0LF;
+    for (uint k = 0u; k < TECHNIQUES; k++) {
+        if (LIGHT == LAYOUT_LIGHT_FACES)
+            worths[k] = worth_of_face(k, normal);
+        else if (LIGHT == LAYOUT_LIGHT_BINS)
+            worths[k] = STATE.bin_shares.at[bin] > 0.0 ? 1.0LF : 0.0LF;
+        else
+            worths[k] = STATE.sums.all.faces[LAYOUT_FACES] != 0u ? 1.0LF : 0.0LF;
+        total += worths[k];
+    }
+    return LIGHT == LAYOUT_LIGHT_NONE ? 1.0LF : total;
+}
+
+void expect_counts(vec3 normal, float share, inout prepared_point p)
+{
+    double worths[LAYOUT_FACES];
+    const double total = find_worths(normal, p.bin, worths);
+    const bool lit = total > 0.0LF;
+    const float samples = float(STEP.samples), by_surface = samples * share;
+    const double light = (lit ? double(samples - by_surface) : 0.0LF) / (lit ? total : 1.0LF);
+    for (uint k = 0u; k < TECHNIQUES; k++)
+        p.expected[k] = float(worths[k] * light);
+    p.surface_expected = lit ? by_surface : 0.0;
+}
+
+// ---- realised counts and windows ----
+
+uint window_of(uint realised, uint pool, uint seed)
+{
+    const uint bits = realised > 1u ? uint(findMSB(realised - 1u)) + 1u : 0u;
+    const uint choice = hash_combine(hash_combine(seed, LAYOUT_STREAM_WINDOW), pool);
+    return pool * STATE.pool_length + (multiply_high(choice, STATE.pool_length >> bits) << bits);
+}
+
+// Systematic rounding: see round_counts() in points_kernel.c.
+void round_counts(uint seed, inout prepared_point p)
+{
+    double total = double(p.surface_expected), scale = 0.0LF;
+    double sum = double(unit_float(hash_combine(seed, LAYOUT_STREAM_ROUNDING))) + 2.98023223876953125e-8LF; // 2^-25
+    uint given = 0u;
+    if (TECHNIQUES > 0u) {
+        total = double(p.expected[0]);
+        for (uint k = 1u; k < TECHNIQUES; k++)
+            total += double(p.expected[k]);
+        total += double(p.surface_expected);
+    }
+    if (total > 0.0LF)
+        scale = double(STEP.samples) / total;
+    for (uint k = 0u; k < TECHNIQUES; k++) {
+        sum += double(p.expected[k]) * scale;
+        const uint up_to = uint(sum), realised = up_to - given;
+        p.end[k] = up_to;
+        p.from[k] = window_of(realised, LIGHT == LAYOUT_LIGHT_BINS ? p.bin : k, seed) - given;
+        given = up_to;
+    }
+    p.surface_count = uint(sum + double(p.surface_expected) * scale) - given;
+}
+
+prepared_point prepare(shading_point given)
+{
+    const uint seed = STEP.same_seed != 0u ? STEP.point_seed : hash_combine(STEP.point_seed, given.pixel);
+    const scene_material m = read_material(given.material_index);
+    const vec3 normal = turned(given.normal);
+    prepared_point p;
+    p.seed = seed;
+    for (uint k = 0u; k < LAYOUT_FACES; k++) {
+        p.end[k] = p.from[k] = 0u;
+        p.expected[k] = 0.0;
+    }
+    p.geometric_normal = turned(given.geometric_normal);
+    p.surface = prepare_brdf(m, normal, lift_view(normal, turned(given.view)));
+    p.bin = LIGHT == LAYOUT_LIGHT_BINS ? bin_of_normal(normal, hash_combine(seed, LAYOUT_STREAM_BIN)) : 0u;
+    expect_counts(normal, surface_share(given, m), p);
+    round_counts(seed, p);
+    p.surface_seed = hash_combine(seed, LAYOUT_STREAM_SURFACE);
+    return p;
+}

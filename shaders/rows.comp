@@ -1,0 +1,97 @@
+#version 460
+// SPDX-License-Identifier: MIT
+//
+// One row of the tables for each work group: weights of its texels, their common exponent, integers, prefix sums. As
+// src/sampling/tables_kernel.c, to the bit. parameter[0]: 1 for the fluxes of the paper's weighting, which take the
+// solid angle where the weights do not, and of which only the sums are wanted.
+#include "common.glsl"
+#include "fixed_point.glsl"
+#include "scan.glsl"
+
+layout(constant_id = 1) const uint TEXELS = 4u; // neighbours that a thread takes at a time
+
+const float LEAST_WEIGHT = 1.17549435e-38; // 2^-126
+
+// What is known of the row, in registers: what lies in memory is looked up anew for each use.
+struct row_of_texels {
+    texels cube;
+    floats angles;
+    uint size, first, first_angle; // of its texels, in the cube and among the solid angles
+    bool by_angle;
+    float quarter_texels;
+};
+
+float weights[TEXELS]; // of this thread's, from `begin` on
+
+// Luminance x relative solid angle. A lit texel weighs something, however dark: told by bits, as devices may take the
+// smallest floats for 0.
+float weigh(row_of_texels row, uint column)
+{
+    const vec3 rgb = row.cube.at[row.first + column];
+    precise float relative = row.by_angle ? row.angles.at[row.first_angle + column] * row.quarter_texels : 1.0;
+    precise float luminance = 0.2126 * rgb.r + 0.7152 * rgb.g + 0.0722 * rgb.b;
+    precise float weight = luminance * relative;
+    const ivec3 bits = floatBitsToInt(rgb);
+    const bool is_lit = max(max(bits.r, bits.g), bits.b) > 0;
+    return is_lit && !(weight > LEAST_WEIGHT) ? LEAST_WEIGHT : max(weight, 0.0);
+}
+
+void weigh_some(row_of_texels row, uint begin)
+{
+    for (uint i = 0u; i < TEXELS; i++)
+        weights[i] = begin + i < row.size ? weigh(row, begin + i) : 0.0;
+}
+
+uint find_largest(row_of_texels row)
+{
+    uint largest = 0u;
+    for (uint first = 0u; first < row.size; first += TEXELS * gl_WorkGroupSize.x) {
+        weigh_some(row, first + TEXELS * gl_LocalInvocationID.x);
+        for (uint i = 0u; i < TEXELS; i++)
+            largest = max(largest, floatBitsToUint(weights[i]));
+    }
+    return greatest_in_group(largest);
+}
+
+// Writes the sums before each texel, or, where they are not wanted, nothing. Returns that of all.
+uint sum_row(row_of_texels row, float factor, bool is_wanted)
+{
+    uints sums = STATE.rows;
+    const uint to = gl_WorkGroupID.x * (row.size + 1u), block = TEXELS * gl_WorkGroupSize.x;
+    uint sum = 0u;
+    for (uint first = 0u; first < row.size; first += block) {
+        const uint begin = first + TEXELS * gl_LocalInvocationID.x;
+        uint own = 0u, total;
+        if (row.size > block) // else they are there still
+            weigh_some(row, begin);
+        for (uint i = 0u; i < TEXELS; i++)
+            own += fixed_point_integer(weights[i], factor);
+        uint before = sum + sum_before_in_group(own, total);
+        for (uint i = 0u; i < TEXELS && begin + i < row.size && is_wanted; i++) {
+            sums.at[to + begin + i] = before;
+            before += fixed_point_integer(weights[i], factor);
+        }
+        sum += total;
+    }
+    return sum;
+}
+
+void main()
+{
+    begin_with_state();
+    const uint index = gl_WorkGroupID.x, size = STATE.size;
+    const bool only_sum = push.parameter[0] != 0u, by_angle = only_sum || STATE.weighting == 0u;
+    precise float quarter_texels = 0.25 * float(size) * float(size);
+    row_of_texels row = row_of_texels(STATE.cube, STATE.solid_angles, size, index * size, index % size * size,
+                                            by_angle, quarter_texels);
+    const int exponent = fixed_point_exponent(find_largest(row), summand_bits(size));
+    const uint sum = sum_row(row, power_of_two(exponent), !only_sum);
+    if (gl_LocalInvocationID.x != 0u)
+        return;
+    if (only_sum) {
+        STATE.fluxes.at[index] = layout_row_sum(sum, exponent);
+    } else {
+        STATE.rows.at[index * (size + 1u) + size] = sum;
+        STATE.weights.at[index] = layout_row_sum(sum, exponent);
+    }
+}

@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: MIT */
+#include "vulkan/light.h"
+
+#include "core/context.h"
+#include "core/error.h"
+#include "env/environment.h"
+
+#include <string.h>
+
+enum { THREADS = 128, THREADS_OF_SOFTWARE = 8, COPY_PIECE = 1 << 20 };
+
+/* ---- creation ----------------------------------------------------------------------------- */
+
+uint32_t light_threads(const vulkan_light *light)
+{
+    return device_is_software(light->device) ? THREADS_OF_SOFTWARE : THREADS;
+}
+
+helio_status light_create_buffers(vulkan_light *light, const light_buffer *buffers, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        HELIO_TRY(buffer_create(light->device, buffers[i].place, buffers[i].count, buffers[i].size, buffers[i].name,
+                                buffers[i].buffer));
+    return HELIO_OK;
+}
+
+static helio_status create_slot(vulkan_light *light, light_slot *slot)
+{
+    const VkSemaphoreCreateInfo semaphore = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
+    const light_buffer buffers[] = {
+        {&slot->staging, BUFFER_UPLOAD, light_cube_bytes(light), 1, "the map on its way"},
+        {&slot->cube, BUFFER_SHARED, light_cube_bytes(light), 1, "the cube"},
+        {&slot->state, BUFFER_ON_DEVICE, 1, sizeof light->state, "the state"},
+    };
+    HELIO_TRY(light_create_buffers(light, buffers, sizeof buffers / sizeof *buffers));
+    HELIO_TRY(commands_create(light->device, true, &slot->upload));
+    return vulkan_check(light->device->vk.CreateSemaphore(light->device->device, &semaphore, NULL, &slot->uploaded),
+                        "making a semaphore");
+}
+
+/* When all is known of the light. */
+static helio_status upload_state(vulkan_light *light, vulkan_commands *commands, const light_slot *slot)
+{
+    light->state.cube = slot->cube.address;
+    return commands_upload(commands, &slot->state, &light->state, sizeof light->state);
+}
+
+static helio_status create_parts(vulkan_light *light, vulkan_commands *commands)
+{
+    HELIO_TRY(light_create_tables(light, commands));
+    HELIO_TRY(light_create_pools(light));
+    if (light->shape->bins != NULL)
+        HELIO_TRY(light_create_bins(light, commands));
+    for (int i = 0; i < LIGHT_SLOTS; i++) {
+        HELIO_TRY(create_slot(light, &light->slots[i]));
+        HELIO_TRY(upload_state(light, commands, &light->slots[i]));
+    }
+    return HELIO_OK;
+}
+
+helio_status light_create(helio_device *device, vulkan_commands *commands, const helio_pools *shape,
+                          vulkan_light *light)
+{
+    *light = (vulkan_light){.device = device, .shape = shape, .environment = shape->tables->environment};
+    helio_status status = create_parts(light, commands);
+    if (status != HELIO_OK)
+        light_destroy(light);
+    return status;
+}
+
+static void destroy_slot(helio_device *device, light_slot *slot)
+{
+    commands_destroy(&slot->upload);
+    device->vk.DestroySemaphore(device->device, slot->uploaded, NULL);
+    buffer_destroy(device, &slot->staging);
+    buffer_destroy(device, &slot->cube);
+    buffer_destroy(device, &slot->state);
+}
+
+void light_destroy(vulkan_light *light)
+{
+    if (light->device == NULL)
+        return;
+    vulkan_buffer *const all[] = {
+        &light->solid_angles, &light->rows,        &light->marginals, &light->row_densities,     &light->weights,
+        &light->fluxes,       &light->sums,        &light->pools,     &light->tile_grid,         &light->tile_positions,
+        &light->tiles,        &light->tile_totals, &light->tile_sums, &light->segment_densities, &light->bins,
+        &light->bin_sums,     &light->bin_shares,  &light->greatest,  &light->list_starts,       &light->listed,
+        &light->moments};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        buffer_destroy(light->device, all[i]);
+    for (int i = 0; i < LIGHT_SLOTS; i++)
+        destroy_slot(light->device, &light->slots[i]);
+    for (int pass = 0; pass < LIGHT_PASSES; pass++)
+        pipeline_destroy(light->device, &light->passes[pass]);
+    *light = (vulkan_light){0};
+}
+
+/* ---- a frame ------------------------------------------------------------------------------ */
+
+uint64_t light_cube_bytes(const vulkan_light *light)
+{
+    const uint64_t size = light->state.size;
+    return CUBE_FACES * size * size * 3 * sizeof(float);
+}
+
+/* Many threads copy faster than one. */
+static void copy_piece(void *data, size_t piece)
+{
+    const vulkan_light *light = data;
+    const size_t all = light_cube_bytes(light), first = piece * COPY_PIECE;
+    const size_t bytes = all - first < COPY_PIECE ? all - first : COPY_PIECE;
+    char *to = light->slots[light->slot].staging.mapped;
+    memcpy(to + first, (const char *)light->environment->cube + first, bytes);
+}
+
+helio_status light_send(vulkan_light *light, uint32_t slot)
+{
+    light_slot *own = &light->slots[slot];
+    light->slot = slot;
+    HELIO_TRY(commands_begin(&own->upload)); /* when the one before has left the staging */
+    context_parallel_for(light->environment->context, (light_cube_bytes(light) + COPY_PIECE - 1) / COPY_PIECE,
+                         copy_piece, light);
+    own->started = commands_mark(&own->upload);
+    commands_copy(&own->upload, &own->staging, &own->cube, light_cube_bytes(light));
+    own->done = commands_mark(&own->upload);
+    return commands_submit_between(&own->upload, VK_NULL_HANDLE, own->uploaded);
+}
+
+VkSemaphore light_sent(const vulkan_light *light)
+{
+    return light->slots[light->slot].uploaded;
+}
+
+double light_send_milliseconds(const vulkan_light *light, uint32_t slot)
+{
+    const light_slot *own = &light->slots[slot];
+    return commands_milliseconds(&own->upload, own->started, own->done);
+}
+
+struct layout_push light_push(const vulkan_light *light, uint64_t step, uint32_t parameter)
+{
+    const uint64_t state = light->slots[light->slot].state.address;
+    return (struct layout_push){.state = {(uint32_t)state, (uint32_t)(state >> 32)},
+                                .step = {(uint32_t)step, (uint32_t)(step >> 32)},
+                                .parameter = {parameter}};
+}

@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: MIT */
+#include "vulkan/points.h"
+
+#include "core/error.h"
+
+/* Materials of all points come first, then those of single points of the object. */
+enum { MATERIAL_OBJECT, MATERIAL_GROUND, SHARED_MATERIALS };
+
+static helio_status create_pair(helio_device *device, uint64_t count, uint64_t size, const char *name,
+                                vulkan_buffer *on_device, vulkan_buffer *staging)
+{
+    HELIO_TRY(buffer_create(device, BUFFER_ON_DEVICE, count, size, name, on_device));
+    return buffer_create(device, BUFFER_UPLOAD, count, size, name, staging);
+}
+
+static helio_status create_buffers(vulkan_points *points, uint64_t pixels)
+{
+    helio_device *device = points->device;
+    const uint64_t materials = SHARED_MATERIALS + (points->has_own_materials ? pixels : 0);
+    HELIO_TRY(create_pair(device, pixels, sizeof(struct layout_point), "the points", &points->points,
+                          &points->points_staging));
+    HELIO_TRY(create_pair(device, materials, sizeof(struct layout_material), "the materials", &points->materials,
+                          &points->materials_staging));
+    return create_pair(device, pixels, sizeof(uint32_t), "the background", &points->misses, &points->misses_staging);
+}
+
+helio_status points_create(helio_device *device, const helio_scene *scene, uint32_t width, uint32_t height,
+                           vulkan_points *points)
+{
+    *points = (vulkan_points){.device = device, .has_own_materials = scene->own_materials};
+    helio_status status = create_buffers(points, (uint64_t)width * height);
+    if (status != HELIO_OK)
+        points_destroy(points);
+    return status;
+}
+
+void points_destroy(vulkan_points *points)
+{
+    vulkan_buffer *const all[] = {&points->points,         &points->materials,         &points->misses,
+                                  &points->points_staging, &points->materials_staging, &points->misses_staging};
+    if (points->device == NULL)
+        return;
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        buffer_destroy(points->device, all[i]);
+    *points = (vulkan_points){0};
+}
+
+static struct layout_material describe_material(const helio_material *material)
+{
+    return (struct layout_material){
+        .diffuse = {material->diffuse[0], material->diffuse[1], material->diffuse[2]},
+        .kind = (uint32_t)material->kind,
+        .specular = {material->specular[0], material->specular[1], material->specular[2]},
+        .exponent = material->exponent,
+        .metallic = material->metallic,
+        .roughness = material->roughness,
+    };
+}
+
+static void stage_point(vulkan_points *points, const struct frame *frame, size_t pixel, vec3 direction)
+{
+    const struct hits *hits = &frame->renderer->hits;
+    const hit_surface *surface = &hits->surfaces[pixel];
+    struct layout_point *to = (struct layout_point *)points->points_staging.mapped + points->point_count;
+    struct layout_material *materials = points->materials_staging.mapped;
+    struct layout_point point = {.pixel = (uint32_t)pixel, .hit = hits->kinds[pixel]};
+    vec3_to(surface->normal, point.normal);
+    vec3_to(surface->geometric_normal, point.geometric_normal);
+    vec3_to(scale(direction, -1.0f), point.view);
+    point.material = hits->kinds[pixel] == HIT_OBJECT ? MATERIAL_OBJECT : MATERIAL_GROUND;
+    if (hits->materials != NULL && hits->kinds[pixel] == HIT_OBJECT) {
+        point.material = SHARED_MATERIALS + points->point_count;
+        materials[point.material] = describe_material(&hits->materials[pixel]);
+    }
+    *to = point;
+    points->point_count++;
+}
+
+/* A piece of a row, as wide as a tile, so that directions are those of the tile. */
+static void stage_row(vulkan_points *points, const struct frame *frame, uint32_t y, uint32_t x0, uint32_t count)
+{
+    const size_t first = (size_t)y * frame->renderer->film.width + x0;
+    const uint8_t *kinds = frame->renderer->hits.kinds + first;
+    uint32_t *misses = points->misses_staging.mapped;
+    float x[TILE], y_positions[TILE], direction_x[TILE], direction_y[TILE], direction_z[TILE];
+    primary_positions(frame, y, x0, count, x, y_positions);
+    primary_directions(frame, count, x, y_positions, direction_x, direction_y, direction_z);
+    for (uint32_t i = 0; i < count; i++)
+        if (kinds[i] == HIT_NOTHING)
+            misses[points->miss_count++] = (uint32_t)(first + i);
+        else
+            stage_point(points, frame, first + i, (vec3){direction_x[i], direction_y[i], direction_z[i]});
+}
+
+void points_stage(vulkan_points *points, const struct frame *frame)
+{
+    const helio_scene *scene = frame->renderer->desc.scene;
+    struct layout_material *materials = points->materials_staging.mapped;
+    points->point_count = points->miss_count = 0;
+    materials[MATERIAL_OBJECT] = describe_material(&scene->material);
+    materials[MATERIAL_GROUND] = describe_material(&scene->ground_material);
+    for (size_t index = 0; index < frame->tile_count; index++) {
+        const struct tile tile = frame_tile(frame, index);
+        for (uint32_t y = tile.y0; y < tile.y1; y++)
+            stage_row(points, frame, y, tile.x0, tile.x1 - tile.x0);
+    }
+}
+
+void points_record_upload(const vulkan_points *points, vulkan_commands *commands)
+{
+    const uint64_t materials = SHARED_MATERIALS + (points->has_own_materials ? points->point_count : 0);
+    commands_copy(commands, &points->points_staging, &points->points,
+                  points->point_count * sizeof(struct layout_point));
+    commands_copy(commands, &points->materials_staging, &points->materials, materials * sizeof(struct layout_material));
+    commands_copy(commands, &points->misses_staging, &points->misses, points->miss_count * sizeof(uint32_t));
+    commands_barrier(commands);
+}
+
+uint32_t points_kinds(const helio_scene *scene)
+{
+    uint32_t kinds = 1u << HELIO_MATERIAL_DIFFUSE | 1u << scene->material.kind;
+    if (scene->own_materials)
+        for (uint32_t i = 0; i < scene->mesh->material_count; i++)
+            kinds |= 1u << scene->mesh->materials[i].kind;
+    return kinds;
+}

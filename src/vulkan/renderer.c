@@ -1,0 +1,422 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A frame on a device: the cube goes up, tables and pools are made of it, points are lit, the picture comes back. */
+#include "vulkan/renderer.h"
+
+#include "core/context.h"
+#include "core/error.h"
+#include "core/random.h"
+#include "env/environment.h"
+#include "vulkan/light.h"
+#include "vulkan/points.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BACKGROUND_THREADS = 64, TILE_THREADS = 64, TILE_THREADS_OF_SOFTWARE = 8 };
+static const float DEFAULT_BRDF_SHARE = 0.5f;
+
+/* How work is shared out when points are lit, see shade.comp. */
+typedef struct shade_shape {
+    uint32_t threads, points, lanes;
+} shade_shape;
+
+/* Marks of a list of commands. */
+typedef struct step_marks {
+    uint32_t start, uploaded, tables, pools, shaded, back;
+} step_marks;
+
+/* A frame that may still be on its way while the next is begun. */
+typedef struct frame_slot {
+    vulkan_commands commands;
+    step_marks marks;
+    vulkan_buffer counts_back;
+    helio_frame_info info; /* as far as it is known */
+    bool is_pending;
+} frame_slot;
+
+struct vulkan_renderer {
+    helio_context *context;
+    helio_device *device;
+    frame_slot slots[LIGHT_SLOTS];
+    uint32_t next;                /* slot */
+    helio_frame_info latest_info; /* of the latest frame that is known to be over */
+    vulkan_light light;
+    vulkan_points points;
+    bool has_points; /* on the device: those of the renderer's hits */
+    shade_shape shape;
+    VkPipeline shade, background;
+    VkPipeline shade_tiles;                      /* where points that shine weigh tiles; else nothing */
+    vulkan_buffer step, counts, picture, object; /* on the device */
+    vulkan_buffer picture_back, object_back;
+};
+
+/* ---- creation ----------------------------------------------------------------------------- */
+
+/* Software takes a point with each thread, as it has no use for neighbours. HELIOSTAT_VULKAN_SHADE=THREADS,POINTS,LANES
+ * is for trying others on new hardware. */
+static shade_shape choose_shape(const helio_device *device)
+{
+    shade_shape shape = device_is_software(device) ? (shade_shape){64, 64, 1} : (shade_shape){64, 32, 16}, tried;
+    const char *variable = getenv("HELIOSTAT_VULKAN_SHADE");
+    if (variable != NULL && sscanf(variable, "%u,%u,%u", &tried.threads, &tried.points, &tried.lanes) == 3 &&
+        tried.lanes > 0 && tried.threads <= 1024 && tried.points <= tried.threads && tried.points > 0 &&
+        tried.threads % tried.lanes == 0)
+        shape = tried;
+    return shape;
+}
+
+static helio_status create_shade_tiles(struct vulkan_renderer *v, const helio_renderer *renderer)
+{
+    const struct layout_state *state = &v->light.state;
+    const uint32_t threads = device_is_software(v->device) ? TILE_THREADS_OF_SOFTWARE : TILE_THREADS;
+    const uint32_t kinds = points_kinds(renderer->desc.scene);
+    const pipeline_desc desc = {"shade_tiles", 2, {threads, kinds}};
+    if (state->light != LAYOUT_LIGHT_BINS || state->surface != LAYOUT_SURFACE_BRDF || kinds == 1u << LAYOUT_DIFFUSE)
+        return HELIO_OK;
+    return pipeline_create(v->device, &desc, &v->shade_tiles);
+}
+
+static helio_status create_passes(struct vulkan_renderer *v, const helio_renderer *renderer)
+{
+    const struct layout_state *state = &v->light.state;
+    v->shape = choose_shape(v->device);
+    const pipeline_desc shade = {"shade",
+                                 6,
+                                 {v->shape.threads, v->shape.points, v->shape.lanes, points_kinds(renderer->desc.scene),
+                                  state->light, state->surface}};
+    const pipeline_desc background = {"background", 1, {BACKGROUND_THREADS}};
+    HELIO_TRY(pipeline_create(v->device, &shade, &v->shade));
+    HELIO_TRY(pipeline_create(v->device, &background, &v->background));
+    return create_shade_tiles(v, renderer);
+}
+
+static helio_status create_buffers(struct vulkan_renderer *v, uint64_t pixels)
+{
+    const uint64_t colour = 4 * sizeof(float), number = sizeof(float), counts = sizeof(struct layout_counts);
+    HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, 1, sizeof(struct layout_step), "a step", &v->step));
+    HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, 1, counts, "the counts", &v->counts));
+    HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, pixels, colour, "the picture", &v->picture));
+    HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, pixels, number, "the object's coverage", &v->object));
+    HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, pixels, colour, "the picture", &v->picture_back));
+    return buffer_create(v->device, BUFFER_READBACK, pixels, number, "the object's coverage", &v->object_back);
+}
+
+static helio_status create_parts(struct vulkan_renderer *v, const helio_renderer *renderer)
+{
+    const helio_renderer_desc *desc = &renderer->desc;
+    for (int i = 0; i < LIGHT_SLOTS; i++) {
+        frame_slot *slot = &v->slots[i];
+        HELIO_TRY(commands_create(v->device, false, &slot->commands));
+        HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, 1, sizeof(struct layout_counts), "the counts",
+                                &slot->counts_back));
+    }
+    HELIO_TRY(light_create(v->device, &v->slots[0].commands, renderer->pools, &v->light));
+    HELIO_TRY(points_create(v->device, desc->scene, desc->width, desc->height, &v->points));
+    HELIO_TRY(create_buffers(v, (uint64_t)desc->width * desc->height));
+    return create_passes(v, renderer);
+}
+
+static helio_status check(const helio_renderer *renderer)
+{
+    if (!renderer->desc.no_visibility)
+        return fail(HELIO_ERR_UNSUPPORTED, "shadow rays are not traced on graphics processors yet; do without "
+                                           "(--visibility none), or compute on the CPU (--backend cpu)");
+    if (renderer->desc.weighting == HELIO_WEIGHTING_COMPENSATED)
+        return fail(HELIO_ERR_UNSUPPORTED,
+                    "graphics processors have no compensated weights yet; take another weighting, "
+                    "or compute on the CPU (--backend cpu)");
+    if (renderer->desc.aovs || renderer->extras.keeps_sums || renderer->extras.lighting != NULL)
+        return fail(HELIO_ERR_UNSUPPORTED, "graphics processors make pictures alone; for layers and references compute "
+                                           "on the CPU (--backend cpu)");
+    return HELIO_OK;
+}
+
+helio_status vulkan_renderer_create(helio_renderer *renderer)
+{
+    HELIO_TRY(check(renderer));
+    struct vulkan_renderer *v = context_allocate(renderer->context, 1, sizeof *v);
+    if (v == NULL)
+        return HELIO_ERR_MEMORY;
+    v->context = renderer->context;
+    v->device = renderer->desc.device;
+    helio_status status = create_parts(v, renderer);
+    if (status != HELIO_OK) {
+        vulkan_renderer_destroy(v);
+        return status;
+    }
+    renderer->vulkan = v;
+    return HELIO_OK;
+}
+
+void vulkan_renderer_destroy(struct vulkan_renderer *v)
+{
+    if (v == NULL)
+        return;
+    vulkan_buffer *const all[] = {&v->step, &v->counts, &v->picture, &v->object, &v->picture_back, &v->object_back};
+    for (int i = 0; i < LIGHT_SLOTS; i++) {
+        commands_destroy(&v->slots[i].commands);
+        buffer_destroy(v->device, &v->slots[i].counts_back);
+    }
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        buffer_destroy(v->device, all[i]);
+    pipeline_destroy(v->device, &v->shade);
+    pipeline_destroy(v->device, &v->background);
+    pipeline_destroy(v->device, &v->shade_tiles);
+    points_destroy(&v->points);
+    light_destroy(&v->light);
+    context_release(v->context, v);
+}
+
+/* ---- the numbers of a step ---------------------------------------------------------------- */
+
+static void put_vectors(const vec3 *vectors, float *to)
+{
+    for (int i = 0; i < 3; i++)
+        vec3_to(vectors[i], to + (size_t)i * 3);
+}
+
+static struct layout_step describe_step(const struct vulkan_renderer *v, const struct frame *frame, uint32_t seed)
+{
+    const helio_renderer_desc *desc = &frame->renderer->desc;
+    const vec3 background[3] = {frame->background.corner, frame->background.across, frame->background.down};
+    struct layout_step step = {
+        .points = v->points.points.address,
+        .materials = v->points.materials.address,
+        .picture = v->picture.address,
+        .object = v->object.address,
+        .misses = v->points.misses.address,
+        .counts = v->counts.address,
+        .intensity = desc->environment->intensity,
+        .pool_seed = hash_combine(seed, frame->step.pass),
+        .point_seed = frame->step_seed,
+        .same_seed = desc->no_decorrelation,
+        .samples = frame->step.samples,
+        .brdf_share = desc->brdf_share != 0.0f ? desc->brdf_share : DEFAULT_BRDF_SHARE,
+        .no_beta = desc->no_beta,
+        .point_count = v->points.point_count,
+        .miss_count = v->points.miss_count,
+        .width = desc->width,
+        .height = desc->height,
+        .camera_seed = frame->seed,
+        .camera_sample = desc->aa == 1 ? UINT32_MAX : frame->step.camera_sample,
+        .is_first = frame->step.is_first,
+        .is_last = frame->step.is_last,
+        .shows_background = frame->renderer->film.shows_background,
+        .weight = (float)frame->weight,
+    };
+    put_vectors(desc->environment->map_axes, step.map_axes);
+    put_vectors(background, step.background);
+    return step;
+}
+
+/* ---- frames that are on their way --------------------------------------------------------- */
+
+static uint64_t whole_count(const uint32_t halves[2])
+{
+    return (uint64_t)halves[1] << 32 | halves[0];
+}
+
+static void add_times(const vulkan_light *light, const frame_slot *slot, uint32_t index, helio_frame_info *info)
+{
+    const vulkan_commands *commands = &slot->commands;
+    const step_marks *marks = &slot->marks;
+    if (info->upload_ms == 0.0)
+        info->upload_ms = light_send_milliseconds(light, index);
+    info->upload_ms += commands_milliseconds(commands, marks->start, marks->uploaded);
+    info->tables_ms += commands_milliseconds(commands, marks->uploaded, marks->tables);
+    info->pools_ms += commands_milliseconds(commands, marks->tables, marks->pools);
+    info->shade_ms += commands_milliseconds(commands, marks->pools, marks->shaded);
+    info->read_back_ms += commands_milliseconds(commands, marks->shaded, marks->back);
+}
+
+/* Waits for the slot's list and learns what it took and counted. */
+static helio_status finish_slot(struct vulkan_renderer *v, uint32_t index)
+{
+    frame_slot *slot = &v->slots[index];
+    if (!slot->is_pending)
+        return HELIO_OK;
+    slot->is_pending = false;
+    HELIO_TRY(commands_wait(&slot->commands));
+    HELIO_TRY(commands_wait(&v->light.slots[index].upload));
+    const struct layout_counts *counts = slot->counts_back.mapped;
+    add_times(&v->light, slot, index, &slot->info);
+    slot->info.samples = whole_count(counts->samples);
+    slot->info.samples_useful = whole_count(counts->useful);
+    v->latest_info = slot->info;
+    return HELIO_OK;
+}
+
+/* The older one first. */
+static helio_status finish_all(struct vulkan_renderer *v)
+{
+    HELIO_TRY(finish_slot(v, v->next));
+    return finish_slot(v, 1 - v->next);
+}
+
+/* ---- camera rays -------------------------------------------------------------------------- */
+
+static void trace_tile(void *data, size_t index)
+{
+    const struct frame *frame = data;
+    primary_tile(frame, frame_tile(frame, index));
+}
+
+/* Traces what is not known and makes lists of it. */
+static helio_status find_points(helio_renderer *renderer, struct frame *frame, bool keeps_hits, helio_frame_info *info)
+{
+    struct vulkan_renderer *v = renderer->vulkan;
+    const bool traces = frame->step.part == 0 && !keeps_hits;
+    const double start = frame_milliseconds();
+    if (traces) {
+        renderer->hits.complete = false;
+        context_parallel_for(renderer->context, frame->tile_count, trace_tile, frame);
+        info->camera_rays += (uint64_t)renderer->desc.width * renderer->desc.height;
+        renderer->hits.camera = frame->camera;
+        renderer->hits.complete = renderer->desc.aa == 1;
+    }
+    v->has_points = v->has_points && !traces;
+    if (!v->has_points) {
+        HELIO_TRY(finish_all(v)); /* nobody copies the lists before */
+        points_stage(&v->points, frame);
+    }
+    info->points += frame->step.part == 0 ? v->points.point_count : 0;
+    info->primary_ms += frame_milliseconds() - start;
+    return HELIO_OK;
+}
+
+/* ---- a step ------------------------------------------------------------------------------- */
+
+static void record_shading(struct vulkan_renderer *v, vulkan_commands *commands)
+{
+    const struct layout_push push = light_push(&v->light, v->step.address, 0);
+    const uint64_t points = v->points.point_count, misses = v->points.miss_count;
+    commands_label(commands, "shading");
+    commands_dispatch(commands, v->shade, &push, (points + v->shape.points - 1) / v->shape.points);
+    if (v->shade_tiles != VK_NULL_HANDLE)
+        commands_dispatch(commands, v->shade_tiles, &push, points);
+    commands_dispatch(commands, v->background, &push, (misses + BACKGROUND_THREADS - 1) / BACKGROUND_THREADS);
+    commands_barrier(commands);
+    commands_label_end(commands);
+}
+
+static void record_read_back(const struct vulkan_renderer *v, frame_slot *slot, bool wants_picture)
+{
+    vulkan_commands *commands = &slot->commands;
+    commands_copy(commands, &v->counts, &slot->counts_back, sizeof(struct layout_counts));
+    if (!wants_picture)
+        return;
+    commands_copy(commands, &v->picture, &v->picture_back, v->picture.bytes);
+    commands_copy(commands, &v->object, &v->object_back, v->object.bytes);
+}
+
+/* Starts with what the step needs that is not there yet: the tables of the frame, the pools of the pass, the points. */
+static void record_step(struct vulkan_renderer *v, frame_slot *slot, const struct frame *frame,
+                        const helio_frame_desc *desc, bool is_new_pass)
+{
+    vulkan_commands *commands = &slot->commands;
+    step_marks *marks = &slot->marks;
+    const struct layout_step step = describe_step(v, frame, desc->seed);
+    marks->start = commands_mark(commands);
+    commands_write(commands, &v->step, &step, sizeof step);
+    if (frame->step.is_first)
+        commands_clear(commands, &v->counts);
+    if (!v->has_points)
+        points_record_upload(&v->points, commands);
+    commands_barrier(commands);
+    marks->uploaded = commands_mark(commands);
+    if (frame->step.is_first)
+        light_record_tables(&v->light, commands);
+    marks->tables = commands_mark(commands);
+    if (is_new_pass)
+        light_record_pools(&v->light, commands, v->step.address, frame->step.is_first);
+    marks->pools = commands_mark(commands);
+    record_shading(v, commands);
+    marks->shaded = commands_mark(commands);
+    record_read_back(v, slot, !desc->no_picture);
+    marks->back = commands_mark(commands);
+}
+
+static helio_status run_step(struct vulkan_renderer *v, frame_slot *slot, const struct frame *frame,
+                             const helio_frame_desc *desc)
+{
+    const bool is_new_pass = frame->step.pass == slot->info.passes;
+    HELIO_TRY(commands_begin(&slot->commands));
+    record_step(v, slot, frame, desc, is_new_pass);
+    HELIO_TRY(commands_submit_between(&slot->commands, frame->step.is_first ? light_sent(&v->light) : VK_NULL_HANDLE,
+                                      VK_NULL_HANDLE));
+    slot->is_pending = true;
+    slot->info.passes += is_new_pass;
+    v->has_points = true;
+    return HELIO_OK;
+}
+
+/* ---- a frame ------------------------------------------------------------------------------ */
+
+/* What a frame that stopped has in its pixels are sums. */
+static void develop_stopped(helio_renderer *renderer, double weight)
+{
+    const struct film *film = &renderer->film;
+    const size_t pixels = (size_t)film->width * film->height;
+    const float scale = weight > 0.0 ? (float)(1.0 / weight) : 0.0f;
+    for (size_t i = 0; i < pixels; i++) {
+        for (int c = 0; c < 4; c++)
+            film->rgba[4 * i + (size_t)c] *= scale;
+        if (film->shows_background)
+            film->rgba[4 * i + 3] = weight > 0.0 ? 1.0f : 0.0f;
+        film->object[i] *= scale;
+    }
+}
+
+static void take_picture(helio_renderer *renderer, const struct frame *frame, bool has_stopped)
+{
+    const struct vulkan_renderer *v = renderer->vulkan;
+    const struct film *film = &renderer->film;
+    const size_t pixels = (size_t)film->width * film->height;
+    memcpy(film->rgba, v->picture_back.mapped, pixels * 4 * sizeof *film->rgba);
+    memcpy(film->object, v->object_back.mapped, pixels * sizeof *film->object);
+    if (has_stopped && !frame->step.is_last)
+        develop_stopped(renderer, frame->weight);
+}
+
+/* All steps but the last are waited for, so that progress can be told. */
+static helio_status run_steps(helio_renderer *renderer, uint32_t index, struct frame *frame,
+                              const helio_frame_desc *desc)
+{
+    struct vulkan_renderer *v = renderer->vulkan;
+    helio_frame_info *info = &v->slots[index].info;
+    const uint32_t steps = frame_step_count(renderer);
+    const bool keeps_hits = !desc->retrace && hits_belong_to(&renderer->hits, &frame->camera);
+    for (uint32_t step = 0; step < steps && !info->stopped; step++) {
+        frame->step = frame_plan_step(renderer, step);
+        frame->weight += frame->step.samples;
+        frame->step_seed = hash_combine(hash_combine(frame->seed, frame->step.camera_sample), frame->step.part);
+        HELIO_TRY(find_points(renderer, frame, keeps_hits, info));
+        HELIO_TRY(run_step(v, &v->slots[index], frame, desc));
+        if (step + 1 < steps || !desc->no_picture)
+            HELIO_TRY(finish_slot(v, index));
+        info->stopped = desc->progress != NULL && !desc->progress(desc->user, (float)(step + 1) / (float)steps);
+    }
+    return HELIO_OK;
+}
+
+helio_status vulkan_renderer_render(helio_renderer *renderer, const helio_frame_desc *desc, helio_frame_info *info)
+{
+    struct vulkan_renderer *v = renderer->vulkan;
+    const uint32_t index = v->next;
+    camera_frame camera;
+    if (renderer->desc.environment->frame == 0)
+        return fail(HELIO_ERR_ARGUMENT, "the environment holds no map yet; call helio_environment_update first");
+    HELIO_TRY(camera_frame_create(&desc->camera, (float)renderer->desc.width / (float)renderer->desc.height, &camera));
+    struct frame frame = frame_begin(renderer, &camera, desc->seed);
+    HELIO_TRY(finish_slot(v, index));
+    v->slots[index].info = (helio_frame_info){0};
+    HELIO_TRY(light_send(&v->light, index));
+    HELIO_TRY(run_steps(renderer, index, &frame, desc));
+    v->next = 1 - index;
+    if (!desc->no_picture)
+        take_picture(renderer, &frame, v->slots[index].info.stopped);
+    *info = desc->no_picture ? v->latest_info : v->slots[index].info;
+    return HELIO_OK;
+}

@@ -1,0 +1,371 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Pictures by a device are those of the CPU: the same samples of the same pools, for every strategy and material. */
+#include "vulkan_support.h"
+
+#include "cpu/renderer.h"
+#include "env/environment.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDTH = 60, HEIGHT = 44, SIZE = 64 };
+
+/* A scene with two renderers of it. */
+typedef struct stage {
+    helio_context *context;
+    helio_device *device;
+    helio_environment *environment;
+    helio_mesh *mesh;
+    helio_scene *scene;
+    helio_renderer *cpu, *vulkan;
+    helio_frame_desc frame;
+} stage;
+
+/* Whether devices are taken for hardware, so that several threads share a point. */
+static bool plays_hardware;
+
+static stage make_stage(const char *material, const helio_renderer_desc *given)
+{
+    stage s = {.context = make_context(1, NULL)};
+    helio_material parsed;
+    s.device = open_test_device(s.context);
+    if (plays_hardware)
+        s.device->info.kind = HELIO_DEVICE_DISCRETE;
+    assert_ok(helio_environment_create(s.context, &(helio_environment_desc){.cube_size = SIZE}, &s.environment));
+    s.mesh = make_unit_sphere(s.context);
+    assert_ok(helio_material_parse(material, &parsed));
+    const helio_scene_desc scene = {.mesh = s.mesh, .material = &parsed, .ground = HELIO_GROUND_PLANE};
+    assert_ok(helio_scene_create(s.context, &scene, &s.scene));
+    helio_renderer_desc desc = *given;
+    desc.environment = s.environment;
+    desc.scene = s.scene;
+    desc.width = WIDTH;
+    desc.height = HEIGHT;
+    desc.no_visibility = true;
+    assert_ok(helio_renderer_create(s.context, &desc, &s.cpu));
+    desc.device = s.device;
+    assert_ok(helio_renderer_create(s.context, &desc, &s.vulkan));
+    assert_ok(helio_camera_parse("auto", s.mesh, (float)WIDTH / HEIGHT, &s.frame.camera));
+    s.frame.seed = 3;
+    return s;
+}
+
+static void destroy_stage(stage *s)
+{
+    helio_renderer_destroy(s->vulkan);
+    helio_renderer_destroy(s->cpu);
+    helio_scene_destroy(s->scene);
+    helio_mesh_destroy(s->context, s->mesh);
+    helio_environment_destroy(s->environment);
+    close_test_device(s->device);
+    helio_context_destroy(s->context);
+}
+
+/* A sky with all sizes of detail, black in places, and a sun of four texels. */
+static void light_stage_with(stage *s, uint64_t seed)
+{
+    float *rgb = s->environment->cube;
+    for (size_t i = 0; i < (size_t)6 * SIZE * SIZE * 3; i++) {
+        const size_t row = i / (3 * SIZE), patch = row / 16 + i / 48;
+        rgb[i] = patch % 7 == 0 ? 0.0f : 0.1f + (float)(patch % 5) * 0.2f + 0.3f * (float)random_unit(&seed);
+    }
+    for (size_t c = 0; c < 12; c++)
+        rgb[((4 * SIZE + 9 + c / 6) * SIZE + 30) * 3 + c % 6] = 2000.0f;
+    s->environment->frame++;
+}
+
+typedef struct difference {
+    double mean;    /* of the pixels' relative differences */
+    double worst;   /* largest of them */
+    uint32_t off;   /* pixels that differ by more than the tolerance */
+    uint32_t count; /* pixels */
+} difference;
+
+static difference compare_pictures(const stage *s, double tolerance)
+{
+    const helio_picture a = helio_renderer_picture(s->vulkan), b = helio_renderer_picture(s->cpu);
+    difference d = {.count = WIDTH * HEIGHT};
+    for (size_t i = 0; i < d.count; i++) {
+        double off = 0, size = 0;
+        for (size_t c = 0; c < 4; c++) {
+            off = fmax(off, fabs((double)a.rgba[4 * i + c] - (double)b.rgba[4 * i + c]));
+            size = fmax(size, fabs((double)b.rgba[4 * i + c]));
+        }
+        off = size > 0 ? off / size : off;
+        d.mean += off / d.count;
+        d.worst = fmax(d.worst, off);
+        d.off += off > tolerance;
+        assert_true(fabs((double)a.object[i] - (double)b.object[i]) <= 1e-6);
+    }
+    return d;
+}
+
+static void render_both(stage *s, helio_frame_info *cpu, helio_frame_info *vulkan)
+{
+    assert_ok(helio_renderer_render(s->cpu, &s->frame, cpu));
+    assert_ok(helio_renderer_render(s->vulkan, &s->frame, vulkan));
+}
+
+/* Where all samples come from pools both take exactly the same ones, and differ by rounding: by 64 products of a few
+ * factors, and for a lobe of exponent 120 by 120 times the rounding of a cosine. */
+static const double ROUNDING = 2e-4;
+
+/* A BRDF sample whose direction is rounded otherwise may meet the texel beside, and a point that weighs tiles may take
+ * another of a tile's samples where its weights are rounded otherwise: in few pixels, where only that sample differs.
+ */
+static const double PIXELS_BESIDE = 0.02;
+
+static void compare_strategy(helio_strategy strategy, const char *material)
+{
+    const helio_renderer_desc desc = {.strategy = strategy};
+    const bool draws = strstr(helio_strategy_name(strategy), "brdf") || strategy == HELIO_STRATEGY_COSINE;
+    stage s = make_stage(material, &desc);
+    helio_frame_info cpu, vulkan;
+    light_stage_with(&s, 17);
+    render_both(&s, &cpu, &vulkan);
+    const difference d = compare_pictures(&s, ROUNDING);
+    print_message("%s, %s: mean %.2e, worst %.2e, %u of %u pixels off; useful %llu and %llu of %llu\n",
+                  helio_strategy_name(strategy), material, d.mean, d.worst, d.off, d.count,
+                  (unsigned long long)vulkan.samples_useful, (unsigned long long)cpu.samples_useful,
+                  (unsigned long long)cpu.samples);
+    assert_int_equal(vulkan.samples, cpu.samples);
+    assert_int_equal(vulkan.points, cpu.points);
+    assert_true(fabs((double)vulkan.samples_useful - (double)cpu.samples_useful) <= 1e-3 * (double)cpu.samples);
+    assert_true(d.off <= (draws ? PIXELS_BESIDE * d.count : 0));
+    assert_true(d.mean <= 1e-4);
+    destroy_stage(&s);
+}
+
+static const char *const MATERIALS[] = {"diffuse:0.8,0.5,0.2", "phong:kd=0.5,ks=0.5,n=120",
+                                        "ggx:base=1,0.8,0.3,metallic=0.5,roughness=0.3"};
+
+/* One material for each strategy, unless there is time for all. */
+static void strategies_give_the_pictures_of_the_cpu(void **state)
+{
+    static const helio_strategy strategies[] = {
+        HELIO_STRATEGY_COSINE, HELIO_STRATEGY_BRDF,      HELIO_STRATEGY_LIGHT,   HELIO_STRATEGY_LIGHT_BRDF,
+        HELIO_STRATEGY_FACE,   HELIO_STRATEGY_FACE_BRDF, HELIO_STRATEGY_PRODUCT, HELIO_STRATEGY_PRODUCT_BRDF};
+    (void)state;
+    for (size_t i = 0; i < sizeof strategies / sizeof *strategies; i++)
+        for (size_t m = 0; m < 3; m++)
+            if (m == (i + 1 + i / 3) % 3 || is_thorough())
+                compare_strategy(strategies[i], MATERIALS[m]);
+}
+
+static void threads_that_share_a_point_light_it_alike(void **state)
+{
+    (void)state;
+    plays_hardware = true;
+    compare_strategy(HELIO_STRATEGY_FACE_BRDF, MATERIALS[1]);
+    compare_strategy(HELIO_STRATEGY_PRODUCT, MATERIALS[0]);
+    compare_strategy(HELIO_STRATEGY_PRODUCT_BRDF, MATERIALS[2]);
+    plays_hardware = false;
+}
+
+static void expect_same(stage *s, double tolerance, const char *what)
+{
+    helio_frame_info cpu, vulkan;
+    render_both(s, &cpu, &vulkan);
+    const difference d = compare_pictures(s, tolerance);
+    if (d.off > 0 || vulkan.samples != cpu.samples || vulkan.passes != cpu.passes)
+        fail_msg("%s: %u pixels differ, the worst by %g; %u passes in place of %u", what, d.off, d.worst, vulkan.passes,
+                 cpu.passes);
+}
+
+/* Several camera samples, several passes for each, and the settings of a renderer. */
+static void settings_do_what_they_do_on_the_cpu(void **state)
+{
+    static const helio_renderer_desc descs[] = {
+        {.strategy = HELIO_STRATEGY_FACE, .aa = 3, .spp = 4, .pool_length = 64, .no_beta = true},
+        {.strategy = HELIO_STRATEGY_FACE, .aa = 2, .spp = 20, .pool_length = 64, .no_decorrelation = true},
+        {.strategy = HELIO_STRATEGY_PRODUCT, .spp = 100, .bins = 3, .background = HELIO_BACKGROUND_NONE},
+        {.strategy = HELIO_STRATEGY_LIGHT, .weighting = HELIO_WEIGHTING_PAPER, .background = HELIO_BACKGROUND_NONE},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof descs / sizeof *descs; i++) {
+        stage s = make_stage(MATERIALS[i % 2], &descs[i]);
+        light_stage_with(&s, i);
+        expect_same(&s, ROUNDING, "settings");
+        destroy_stage(&s);
+    }
+}
+
+/* Frame t is lit by frame t, whatever else changes: the map's turn, mirror and intensity, and the camera. */
+static void sequences_give_the_pictures_of_the_cpu(void **state)
+{
+    const helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_FACE, .spp = 8};
+    const uint64_t frames = is_thorough() ? 300 : 24;
+    stage s = make_stage(MATERIALS[0], &desc);
+    (void)state;
+    for (uint64_t i = 0; i < frames; i++) {
+        const helio_orientation turn = {
+            .rotate = (float)(i * 13), .flip = i % 6 > 3, .intensity = 1.0f + (float)(i % 4)};
+        light_stage_with(&s, i);
+        assert_ok(helio_environment_orient(s.environment, &turn));
+        if (i % 8 == 7)
+            assert_ok(helio_camera_parse(i % 16 == 7 ? "orbit:azimuth=70" : "auto", s.mesh, (float)WIDTH / HEIGHT,
+                                         &s.frame.camera));
+        s.frame.seed = (uint32_t)i;
+        s.frame.retrace = i % 5 == 4;
+        expect_same(&s, ROUNDING, "a frame");
+    }
+    destroy_stage(&s);
+}
+
+/* Frames whose picture is not wanted go on beside each other; what is told of them comes later. */
+static void frames_on_their_way_do_not_mix(void **state)
+{
+    const helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_PRODUCT, .spp = 16, .bins = 3, .pool_length = 64};
+    stage s = make_stage(MATERIALS[0], &desc);
+    helio_frame_info info, told;
+    (void)state;
+    for (uint64_t round = 0; round < 6; round++) {
+        s.frame.no_picture = true;
+        for (uint64_t i = 0; i < round; i++) {
+            light_stage_with(&s, 100 * round + i);
+            s.frame.seed = (uint32_t)i;
+            assert_ok(helio_renderer_render(s.vulkan, &s.frame, &told));
+        }
+        s.frame.no_picture = false;
+        light_stage_with(&s, round);
+        expect_same(&s, ROUNDING, "the frame after some that were not looked at");
+        assert_ok(helio_renderer_render(s.vulkan, &s.frame, &info));
+        if (round > 2)
+            assert_int_equal(told.samples, info.samples); /* every frame has as many */
+    }
+    destroy_stage(&s);
+}
+
+/* AUTO leaves even light to the BRDF, and comes back when it is even no more. */
+static void even_light_is_not_aimed_at(void **state)
+{
+    const helio_renderer_desc desc = {.spp = 32, .bins = 3, .pool_length = 128};
+    (void)state;
+    for (size_t m = 0; m < 2; m++) {
+        stage s = make_stage(MATERIALS[m], &desc);
+        for (int i = 0; i < 3; i++) {
+            light_stage_with(&s, 1);
+            if (i != 1)
+                for (size_t k = 0; k < (size_t)6 * SIZE * SIZE * 3; k++)
+                    s.environment->cube[k] = 1.0f + 0.1f * (float)(k / ((size_t)SIZE * SIZE * 3));
+            expect_same(&s, ROUNDING, "even light");
+            assert_true(s.cpu->pools->is_even == (i != 1));
+        }
+        destroy_stage(&s);
+    }
+}
+
+static void black_maps_give_black_pictures(void **state)
+{
+    const helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_FACE_BRDF, .spp = 16};
+    stage s = make_stage(MATERIALS[0], &desc);
+    (void)state;
+    fill_cube(s.environment, MAP_BLACK, 0);
+    expect_same(&s, 0.0, "a black map");
+    fill_cube(s.environment, MAP_ONE_TEXEL, 5);
+    expect_same(&s, ROUNDING, "one texel");
+    destroy_stage(&s);
+}
+
+/* ---- what a caller may do ---- */
+
+static bool stop_after_two(void *user, float done)
+{
+    uint32_t *calls = user;
+    assert_true(done > 0.0f && done <= 1.0f);
+    return ++*calls < 2;
+}
+
+static void frames_stop_when_told_to(void **state)
+{
+    const helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_FACE, .aa = 4, .spp = 8, .pool_length = 64};
+    stage s = make_stage(MATERIALS[0], &desc);
+    uint32_t calls = 0;
+    helio_frame_info info;
+    (void)state;
+    light_stage_with(&s, 1);
+    s.frame.progress = stop_after_two;
+    s.frame.user = &calls;
+    assert_ok(helio_renderer_render(s.vulkan, &s.frame, &info));
+    assert_true(info.stopped);
+    assert_int_equal(calls, 2);
+    const helio_picture picture = helio_renderer_picture(s.vulkan);
+    double mean = 0, whole = 0;
+    for (size_t i = 0; i < WIDTH * HEIGHT; i++)
+        mean += (double)picture.rgba[4 * i] / (WIDTH * HEIGHT);
+    s.frame.progress = NULL;
+    assert_ok(helio_renderer_render(s.vulkan, &s.frame, &info)); /* and go on as if nothing had been */
+    for (size_t i = 0; i < WIDTH * HEIGHT; i++)
+        whole += (double)picture.rgba[4 * i] / (WIDTH * HEIGHT);
+    assert_true(fabs(mean - whole) < 0.1 * whole);
+    expect_same(&s, ROUNDING, "the frame after one that stopped");
+    destroy_stage(&s);
+}
+
+static void what_a_device_cannot_do_is_told(void **state)
+{
+    const helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_FACE, .spp = 8};
+    stage s = make_stage(MATERIALS[0], &desc);
+    helio_renderer *renderer;
+    helio_renderer_desc wrong = {
+        .environment = s.environment, .scene = s.scene, .width = 8, .height = 8, .device = s.device};
+    (void)state;
+    assert_int_equal(helio_renderer_create(s.context, &wrong, &renderer), HELIO_ERR_UNSUPPORTED);
+    assert_non_null(strstr(helio_last_error(), "shadow"));
+    wrong.no_visibility = wrong.aovs = true;
+    assert_int_equal(helio_renderer_create(s.context, &wrong, &renderer), HELIO_ERR_UNSUPPORTED);
+    assert_int_equal(helio_renderer_render(s.vulkan, &s.frame, NULL), HELIO_ERR_ARGUMENT); /* no map yet */
+    destroy_stage(&s);
+}
+
+/* ---- memory ---- */
+
+/* After the first frame none is taken: neither of the context, nor by objects of the device, which the validation layer
+ * would have to be told of. */
+static void frames_take_no_memory(void **state)
+{
+    memory_count count = {0};
+    const helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_PRODUCT, .spp = 8, .bins = 2, .pool_length = 64};
+    stage s = make_stage(MATERIALS[0], &desc);
+    helio_context *context = make_context(1, &count);
+    (void)state;
+    const size_t live = count.live;
+    light_stage_with(&s, 1);
+    helio_renderer_desc own = desc;
+    own.environment = s.environment;
+    own.scene = s.scene;
+    own.width = own.height = 16;
+    own.no_visibility = true;
+    own.device = s.device;
+    helio_renderer *renderer;
+    assert_ok(helio_renderer_create(context, &own, &renderer));
+    assert_ok(helio_renderer_render(renderer, &s.frame, NULL));
+    const size_t taken = count.taken;
+    for (int i = 0; i < 5; i++)
+        assert_ok(helio_renderer_render(renderer, &s.frame, NULL));
+    assert_int_equal(count.taken, taken);
+    helio_renderer_destroy(renderer);
+    assert_int_equal(count.live, live);
+    helio_context_destroy(context);
+    destroy_stage(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(strategies_give_the_pictures_of_the_cpu),
+        cmocka_unit_test(threads_that_share_a_point_light_it_alike),
+        cmocka_unit_test(settings_do_what_they_do_on_the_cpu),
+        cmocka_unit_test(sequences_give_the_pictures_of_the_cpu),
+        cmocka_unit_test(frames_on_their_way_do_not_mix),
+        cmocka_unit_test(even_light_is_not_aimed_at),
+        cmocka_unit_test(black_maps_give_black_pictures),
+        cmocka_unit_test(frames_stop_when_told_to),
+        cmocka_unit_test(what_a_device_cannot_do_is_told),
+        cmocka_unit_test(frames_take_no_memory),
+    };
+    return cmocka_run_group_tests_name("vulkan_render", tests, NULL, NULL);
+}
