@@ -288,8 +288,10 @@ const cli_option option_table[] = {
      .initial = "0.5",
      .minimum = 0.001,
      .maximum = 0.999,
-     .help = "part of the samples that follow the material in the strategies that end in +brdf; product+brdf gives so "
-             "many to a surface that only shines, fewer the more it scatters, and none to a matte one",
+     .help =
+         "part of the samples that follow the material in the strategies that end in +brdf; product+brdf "
+         "finds a part of its own for each point, more the sharper it shines, none where it is matte, and takes this "
+         "as a push up or down",
      .kind = OPTION_NUMBER,
      MEMBER(brdf_share),
      STUDIED(GROUP_SAMPLING)},

@@ -47,6 +47,7 @@ typedef struct samples_findings {
     helio_pixel_step pixel;               /* in the first pass */
     float normal[3], geometric_normal[3]; /* in the map's space */
     uint32_t passes;                      /* each has pools of its own */
+    bool is_of_tiles;                     /* the point reads the lists of tiles in place of a pool */
     uint32_t pool_count, pool_length;     /* pools that the point reads in a pass, samples of a pool */
     uint32_t pooled;                      /* samples of these pools; there are none of faces without light */
     helio_pool_sample *pools;             /* [pooled] */

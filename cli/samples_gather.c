@@ -70,8 +70,8 @@ static helio_status read_pools(samples_findings *found, const gathered_step *ste
     helio_status status = HELIO_OK;
     for (uint32_t k = 0; k < found->pool_count && status == HELIO_OK; k++) {
         const uint32_t pool = step->counts.pool[k];
-        found->pool_length =
-            pool == HELIO_POOL_OF_TILES ? helio_pools_listed(step->pools) : helio_pools_length(step->pools);
+        found->is_of_tiles = pool == HELIO_POOL_OF_TILES;
+        found->pool_length = found->is_of_tiles ? helio_pools_listed(step->pools) : helio_pools_length(step->pools);
         status = read_pool(found, step->pools, pool);
     }
     return status;

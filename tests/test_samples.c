@@ -184,6 +184,8 @@ static void the_used_samples_sum_to_the_pixel_of_the_render(void **state)
         "--strategy face+brdf --material ggx:base=1,0.8,0.3,metallic=1,roughness=0.2 --brdf-share 0.25",
         "--strategy light --material diffuse:0.8,0.5,0.2 --ground plane",
         "--strategy brdf --decorrelate none --seed 5",
+        "--strategy product+brdf --spp 100",
+        "--strategy product+brdf --material diffuse:0.8 --rotate 50",
         "--no-beta --weighting paper --seed-mode frame",
     };
     write_sunny_map(4);
@@ -206,6 +208,25 @@ static void the_used_samples_sum_to_the_pixel_of_the_render(void **state)
             assert_true(fabs(radiance[c] - picture[c]) <= ROUNDING * picture[c]);
         }
         json_decref(seen);
+    }
+}
+
+/* A point that shines reads the lists of the tiles, a matte one the pool of a bin. */
+static void a_point_of_product_names_what_it_reads(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+    static const char *const materials[] = {"phong:kd=0.5,ks=0.5,n=40", "diffuse:0.8"};
+    static const char *const names[] = {"tiles", "bin"}, *const remarks[] = {"material and cosine", "for normals like"};
+    write_sunny_map(4);
+    for (size_t i = 0; i < 2; i++) {
+        char options[512];
+        snprintf(options, sizeof options,
+                 "samples " SCENE " --pixel 30,20 --strategy product+brdf --material %s --out a.png", materials[i]);
+        succeeds(options);
+        assert_non_null(strstr(program_out, names[i]));
+        assert_non_null(strstr(program_out, remarks[i]));
+        assert_null(strstr(program_out, names[1 - i]));
     }
 }
 
@@ -849,6 +870,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         program_test(counts_sum_to_the_samples),
         program_test(the_used_samples_sum_to_the_pixel_of_the_render),
+        program_test(a_point_of_product_names_what_it_reads),
         program_test(useless_samples_give_nothing_and_used_ones_are_above_the_horizon),
         program_test(shadows_are_told_from_what_is_useless),
         program_test(no_sample_is_spent_on_a_sun_behind_the_point),
