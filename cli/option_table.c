@@ -949,8 +949,7 @@ const cli_option option_table[] = {
      .argument = "B",
      .initial = "auto",
      .choices = "auto cpu vulkan",
-     .help = "what computes; vulkan is a graphics processor, which traces no shadow rays yet (--visibility none), and "
-             "auto means the CPU",
+     .help = "what computes; vulkan is a graphics processor, and auto means the CPU",
      .kind = OPTION_CHOICE,
      MEMBER(backend),
      RENDER(GROUP_PROGRAM)},

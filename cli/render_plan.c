@@ -69,8 +69,8 @@ static int choose_light(render_plan *plan, bool may_be_sequence)
 static int check_program(const cli_options *options)
 {
     const bool is_vulkan = is(options->backend, "vulkan");
-    if (is_vulkan && !is(options->visibility, "none"))
-        return message_usage("--backend vulkan traces no shadow rays yet; give --visibility none, or --backend cpu");
+    if (is_vulkan && is(options->ground, "shadow"))
+        return message_usage("--backend vulkan has no --ground shadow yet; give another ground, or --backend cpu");
     if (is_vulkan && options->aovs)
         return message_usage("--backend vulkan makes no layers for --aovs; give --backend cpu");
     if (options->quiet && options->verbose)

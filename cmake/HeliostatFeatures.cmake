@@ -104,7 +104,7 @@ if(HELIO_WITH_VULKAN)
     set(SHADERS rows marginals faces moments evenness pools tiles tile_light bins greatest lists draw_lists draw_bins shade
         shade_tiles background)
     include(HeliostatShaders)
-    list(APPEND SOURCES src/vulkan/bins.c src/vulkan/buffer.c src/vulkan/commands.c src/vulkan/copy_rate.c src/vulkan/device.c src/vulkan/device_choice.c
+    list(APPEND SOURCES src/vulkan/bins.c src/vulkan/buffer.c src/vulkan/bvh.c src/vulkan/commands.c src/vulkan/copy_rate.c src/vulkan/device.c src/vulkan/device_choice.c
          src/vulkan/functions.c src/vulkan/light.c src/vulkan/pipeline.c src/vulkan/points.c
          src/vulkan/pools.c src/vulkan/renderer.c src/vulkan/tables.c)
     list(APPEND FEATURE_DEFINITIONS HELIO_WITH_VULKAN=1)

@@ -174,6 +174,9 @@ struct layout_step {
     ADDRESS(floats, object);                 /* [height][width] */
     ADDRESS(uints, misses);                  /* [miss_count]: pixels that show the background */
     ADDRESS(counts_of_frame, counts);
+    ADDRESS(vectors, origins);  /* [point_count]: where shadow rays start, see rays.glsl; nothing without them */
+    ADDRESS(vectors, nodes);    /* [...][4]: struct bvh_node */
+    ADDRESS(vectors, triangles); /* [...][3] */
     FLOAT map_axes[9];     /* see environment.h */
     FLOAT intensity;
     FLOAT background[9];   /* corner, across, down: see background.h */
@@ -190,7 +193,7 @@ struct layout_step {
     UINT is_first, is_last;
     UINT shows_background;
     FLOAT weight;          /* of all samples when the step is over */
-    UINT padding;
+    UINT has_ground;
 };
 
 /* What is pushed. */
@@ -203,7 +206,7 @@ struct layout_push {
 _Static_assert(sizeof(struct layout_sums) == 128, "as in the shaders");
 _Static_assert(sizeof(struct layout_material) == 48 && sizeof(struct layout_point) == 48, "as in the shaders");
 _Static_assert(sizeof(struct layout_state) == 22 * 8 + 18 * 4, "as in the shaders");
-_Static_assert(sizeof(struct layout_step) == 6 * 8 + 36 * 4, "as in the shaders");
+_Static_assert(sizeof(struct layout_step) == 9 * 8 + 36 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_push) == 32, "as in the shaders");
 #endif
 #endif

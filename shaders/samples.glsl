@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: MIT
 // samples.glsl - what single samples add to the light of a point: the balance heuristic with the expected counts.
-// Needs point.glsl.
+// Needs point.glsl and rays.glsl.
 
-// Light and the number of useful samples so far.
-void add_sample(vec3 light, bool counts, inout vec4 sum)
+vec4 origin_of_rays; // of the point in hand, see read_origin()
+
+// Light that reaches the point and the number of useful samples, whether or not they reach it, so far.
+void add_sample(vec3 light, bool counts, vec3 direction, inout vec4 sum)
 {
     counts = counts && light.r + light.g + light.b > 0.0;
-    sum += counts ? vec4(light, 1.0) : vec4(0.0);
+    if (VISIBILITY == 0u)
+        sum += counts ? vec4(light, 1.0) : vec4(0.0);
+    else if (counts)
+        sum += vec4(reaches(origin_of_rays, direction) ? light : vec3(0.0), 1.0);
 }
 
 // A sample of a light technique. light: its radiance / density. expected: how many of them the technique draws.
@@ -20,7 +25,7 @@ void add_light_sample(prepared_point p, vec3 direction, vec3 light, float densit
         total = density * expected + p.surface_expected * brdf_density(p.surface, direction);
     }
     const vec3 value = brdf_value(p.surface, direction, cosine);
-    add_sample(light * value * (cosine / total), cosine > 0.0 && above > 0.0 && total > 0.0, sum);
+    add_sample(light * value * (cosine / total), cosine > 0.0 && above > 0.0 && total > 0.0, direction, sum);
 }
 
 // A sample of the surface technique, and where it meets the map.
@@ -53,7 +58,7 @@ void add_surface_sample(prepared_point p, surface_sample drawn, float of_light, 
     const float total = of_light + p.surface_expected * density;
     const vec3 radiance = texel_radiance(texel_index(drawn.at.face, drawn.at.row, drawn.at.column));
     const vec3 value = brdf_value(p.surface, drawn.direction, drawn.cosine);
-    add_sample(radiance * value * (drawn.cosine / total), total > 0.0, sum);
+    add_sample(radiance * value * (drawn.cosine / total), total > 0.0, drawn.direction, sum);
 }
 
 // In 64 bits, as two halves.

@@ -11,6 +11,7 @@ layout(constant_id = 2) const uint LANES = 16u;  // threads for a point, divides
 layout(constant_id = 3) const uint KINDS = 7u;   // of materials, as bits
 layout(constant_id = 4) const uint LIGHT = 2u;
 layout(constant_id = 5) const uint SURFACE = 2u;
+layout(constant_id = 6) const uint VISIBILITY = 1u; // whether shadow rays are traced
 
 #include "random.glsl"
 #include "cube.glsl"
@@ -21,6 +22,7 @@ layout(constant_id = 5) const uint SURFACE = 2u;
 #include "brdf.glsl"
 #include "point.glsl"
 #include "film.glsl"
+#include "rays.glsl"
 #include "samples.glsl"
 
 shared prepared_point points[POINTS];
@@ -74,9 +76,10 @@ float density_of_light(prepared_point p, face_place at)
 // ---- points ----
 
 // What one of LANES threads adds to a point.
-vec4 light_point(prepared_point p, uint lane)
+vec4 light_point(prepared_point p, uint index, uint lane)
 {
     vec4 sum = vec4(0.0);
+    origin_of_rays = read_origin(index);
     if (TECHNIQUES > 0u) {
         const uint count = p.end[TECHNIQUES > 0u ? TECHNIQUES - 1u : 0u];
         for (uint i = lane; i < count; i += LANES)
@@ -125,11 +128,11 @@ void main()
     barrier();
     if (LANES == 1u) {
         if (has_point)
-            finish(given, own, light_point(own, 0u));
+            finish(given, own, light_point(own, first + thread, 0u));
     } else {
         const uint lane = thread % LANES, count = first < STEP.point_count ? min(POINTS, STEP.point_count - first) : 0u;
         for (uint i = thread / LANES; i < count; i += gl_WorkGroupSize.x / LANES)
-            parts[i * LANES + lane] = light_point(points[i], lane);
+            parts[i * LANES + lane] = light_point(points[i], first + i, lane);
         barrier();
         vec4 sum = vec4(0.0);
         for (uint i = 0u; i < LANES && has_point; i++)

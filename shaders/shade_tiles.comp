@@ -7,6 +7,7 @@
 #include "common.glsl"
 
 layout(constant_id = 1) const uint KINDS = 7u; // of materials, as bits
+layout(constant_id = 2) const uint VISIBILITY = 1u;
 const uint LIGHT = LAYOUT_LIGHT_BINS, SURFACE = LAYOUT_SURFACE_BRDF;
 
 #include "random.glsl"
@@ -19,6 +20,7 @@ const uint LIGHT = LAYOUT_LIGHT_BINS, SURFACE = LAYOUT_SURFACE_BRDF;
 #include "brdf.glsl"
 #include "point.glsl"
 #include "film.glsl"
+#include "rays.glsl"
 #include "samples.glsl"
 
 shared uint sums[LAYOUT_TILES_MOST + 1]; // before each tile; at first the bits of the weights
@@ -142,6 +144,7 @@ float density_of_tiles(prepared_point p, face_place at, uint total)
 vec4 light_point(prepared_point p, uint total)
 {
     vec4 sum = vec4(0.0);
+    origin_of_rays = read_origin(group_index());
     for (uint i = gl_LocalInvocationID.x; i < p.end[0]; i += gl_WorkGroupSize.x)
         add_tile_sample(p, i, total, sum);
     for (uint i = gl_LocalInvocationID.x; i < p.surface_count; i += gl_WorkGroupSize.x) {

@@ -24,8 +24,8 @@ typedef struct stage {
     helio_frame_desc frame;
 } stage;
 
-/* Whether devices are taken for hardware, so that several threads share a point. */
-static bool plays_hardware;
+/* Whether devices are taken for hardware, so that several threads share a point; whether shadow rays are traced. */
+static bool plays_hardware, casts_rays;
 
 static stage make_stage(const char *material, const helio_renderer_desc *given)
 {
@@ -44,7 +44,7 @@ static stage make_stage(const char *material, const helio_renderer_desc *given)
     desc.scene = s.scene;
     desc.width = WIDTH;
     desc.height = HEIGHT;
-    desc.no_visibility = true;
+    desc.no_visibility = !casts_rays;
     assert_ok(helio_renderer_create(s.context, &desc, &s.cpu));
     desc.device = s.device;
     assert_ok(helio_renderer_create(s.context, &desc, &s.vulkan));
@@ -163,6 +163,16 @@ static void threads_that_share_a_point_light_it_alike(void **state)
     compare_strategy(HELIO_STRATEGY_PRODUCT, MATERIALS[0]);
     compare_strategy(HELIO_STRATEGY_PRODUCT_BRDF, MATERIALS[2]);
     plays_hardware = false;
+}
+
+/* Rays that graze an edge may meet it in one tree and not in the other: few pixels. */
+static void shadows_fall_where_the_cpu_has_them(void **state)
+{
+    (void)state;
+    casts_rays = true;
+    compare_strategy(HELIO_STRATEGY_FACE_BRDF, MATERIALS[1]);
+    compare_strategy(HELIO_STRATEGY_PRODUCT_BRDF, MATERIALS[2]);
+    casts_rays = false;
 }
 
 static void expect_same(stage *s, double tolerance, const char *what)
@@ -313,9 +323,7 @@ static void what_a_device_cannot_do_is_told(void **state)
     helio_renderer_desc wrong = {
         .environment = s.environment, .scene = s.scene, .width = 8, .height = 8, .device = s.device};
     (void)state;
-    assert_int_equal(helio_renderer_create(s.context, &wrong, &renderer), HELIO_ERR_UNSUPPORTED);
-    assert_non_null(strstr(helio_last_error(), "shadow"));
-    wrong.no_visibility = wrong.aovs = true;
+    wrong.aovs = true;
     assert_int_equal(helio_renderer_create(s.context, &wrong, &renderer), HELIO_ERR_UNSUPPORTED);
     assert_int_equal(helio_renderer_render(s.vulkan, &s.frame, NULL), HELIO_ERR_ARGUMENT); /* no map yet */
     destroy_stage(&s);
@@ -358,6 +366,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(strategies_give_the_pictures_of_the_cpu),
         cmocka_unit_test(threads_that_share_a_point_light_it_alike),
+        cmocka_unit_test(shadows_fall_where_the_cpu_has_them),
         cmocka_unit_test(settings_do_what_they_do_on_the_cpu),
         cmocka_unit_test(sequences_give_the_pictures_of_the_cpu),
         cmocka_unit_test(frames_on_their_way_do_not_mix),

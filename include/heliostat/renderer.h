@@ -41,9 +41,9 @@ typedef struct helio_renderer_desc {
     bool no_decorrelation; /* all pixels read the same windows of the pools: shows bands */
     bool no_visibility;    /* light passes through everything, the paper's setting; default: shadow rays */
     helio_background background;
-    helio_device *device; /* computes tables, pools, light and background; it must outlive the renderer. Camera rays are
-                             the CPU's, and shadow rays and aovs there are none: HELIO_ERR_UNSUPPORTED without
-                             no_visibility, and with aovs. Default: the CPU computes all */
+    helio_device *device; /* computes tables, pools, light, shadow rays and background; it must outlive the renderer.
+                             Camera rays are the CPU's, and shadow catchers, aovs and compensated weights there are
+                             none: HELIO_ERR_UNSUPPORTED. Default: the CPU computes all */
     bool aovs;            /* also fill albedo, normal, position and depth: means over the camera samples that
                                                   hit object or plane (a shadow catcher is not hit) */
 } helio_renderer_desc;

@@ -264,13 +264,25 @@ bool scene_occluded(const helio_scene *scene, vec3 position, vec3 geometric_norm
     return !visible;
 }
 
+/* Seen points lie on the plane's underside, where only open space is left, or above it, where it hides all light from
+ * below. Heights are not compared: the lowest points of the mesh are on the plane. */
+static bool is_underside(const helio_scene *scene, vec3 position, vec3 geometric_normal)
+{
+    return scene->ground != HELIO_GROUND_NONE && geometric_normal.y == -1.0f && position.y == scene->ground_height;
+}
+
+scene_shadow scene_prepare_shadow(const helio_scene *scene, vec3 position, vec3 geometric_normal)
+{
+    return (scene_shadow){.origin = offset_origin(scene, position, geometric_normal),
+                          .underside = is_underside(scene, position, geometric_normal),
+                          .far = view_sphere(scene, position).far};
+}
+
 void scene_find_visible(const helio_scene *scene, vec3 position, vec3 geometric_normal, uint32_t count, const float *x,
                         const float *y, const float *z, bool *visible)
 {
-    /* Seen points lie on the plane's underside, where only open space is left, or above it, where it hides all light
-     * from below. Heights are not compared: the lowest points of the mesh are on the plane. */
     bool has_ground = scene->ground != HELIO_GROUND_NONE;
-    bool underside = has_ground && geometric_normal.y == -1.0f && position.y == scene->ground_height;
+    bool underside = is_underside(scene, position, geometric_normal);
     sphere_view sphere = view_sphere(scene, position);
     float ray_x[SCENE_RAYS], ray_y[SCENE_RAYS], ray_z[SCENE_RAYS];
     uint32_t index[SCENE_RAYS], ray_count = 0;
@@ -286,6 +298,8 @@ void scene_find_visible(const helio_scene *scene, vec3 position, vec3 geometric_
         index[ray_count++] = i;
     }
     bool occluded[SCENE_RAYS];
+    if (ray_count == 0)
+        return;
     rays_occluded_many(scene->rays, offset_origin(scene, position, geometric_normal), ray_count, ray_x, ray_y, ray_z,
                        occluded);
     for (uint32_t i = 0; i < ray_count; i++)

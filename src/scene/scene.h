@@ -40,6 +40,15 @@ enum { SCENE_RAYS = 64 }; /* at most in one call */
 void scene_intersect_many(const helio_scene *scene, vec3 origin, uint32_t count, const float *x, const float *y,
                           const float *z, scene_hit *hits, bool *met);
 
+/* What shadow rays of a point begin with: where, and what is known without them. */
+typedef struct scene_shadow {
+    vec3 origin;
+    bool underside; /* the point is below the ground, where only open space is left */
+    bool far;       /* the mesh is too far away to be met */
+} scene_shadow;
+
+scene_shadow scene_prepare_shadow(const helio_scene *scene, vec3 position, vec3 geometric_normal);
+
 /* Does light from these directions, of unit length, reach a point that scene_intersect() found? Light from behind the
  * surface does not. visible: [count]. */
 void scene_find_visible(const helio_scene *scene, vec3 position, vec3 geometric_normal, uint32_t count, const float *x,

@@ -3,6 +3,8 @@
 
 #include "core/error.h"
 
+#include <string.h>
+
 /* Materials of all points come first, then those of single points of the object. */
 enum { MATERIAL_OBJECT, MATERIAL_GROUND, SHARED_MATERIALS };
 
@@ -21,13 +23,15 @@ static helio_status create_buffers(vulkan_points *points, uint64_t pixels)
                           &points->points_staging));
     HELIO_TRY(create_pair(device, materials, sizeof(struct layout_material), "the materials", &points->materials,
                           &points->materials_staging));
+    HELIO_TRY(create_pair(device, points->casts_rays ? pixels : 0, 4 * sizeof(float), "the shadow rays",
+                          &points->origins, &points->origins_staging));
     return create_pair(device, pixels, sizeof(uint32_t), "the background", &points->misses, &points->misses_staging);
 }
 
-helio_status points_create(helio_device *device, const helio_scene *scene, uint32_t width, uint32_t height,
-                           vulkan_points *points)
+helio_status points_create(helio_device *device, const helio_scene *scene, bool casts_rays, uint32_t width,
+                           uint32_t height, vulkan_points *points)
 {
-    *points = (vulkan_points){.device = device, .has_own_materials = scene->own_materials};
+    *points = (vulkan_points){.device = device, .has_own_materials = scene->own_materials, .casts_rays = casts_rays};
     helio_status status = create_buffers(points, (uint64_t)width * height);
     if (status != HELIO_OK)
         points_destroy(points);
@@ -37,7 +41,8 @@ helio_status points_create(helio_device *device, const helio_scene *scene, uint3
 void points_destroy(vulkan_points *points)
 {
     vulkan_buffer *const all[] = {&points->points,         &points->materials,         &points->misses,
-                                  &points->points_staging, &points->materials_staging, &points->misses_staging};
+                                  &points->points_staging, &points->materials_staging, &points->misses_staging,
+                                  &points->origins,        &points->origins_staging};
     if (points->device == NULL)
         return;
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
@@ -57,6 +62,16 @@ static struct layout_material describe_material(const helio_material *material)
     };
 }
 
+/* See read_origin() in rays.glsl. */
+static void stage_origin(vulkan_points *points, const helio_scene *scene, const hit_surface *surface)
+{
+    float *to = (float *)points->origins_staging.mapped + 4 * (size_t)points->point_count;
+    const scene_shadow shadow = scene_prepare_shadow(scene, surface->position, surface->geometric_normal);
+    const uint32_t known = (shadow.underside ? 1u : 0u) | (shadow.far ? 2u : 0u);
+    vec3_to(shadow.origin, to);
+    memcpy(to + 3, &known, sizeof known);
+}
+
 static void stage_point(vulkan_points *points, const struct frame *frame, size_t pixel, vec3 direction)
 {
     const struct hits *hits = &frame->renderer->hits;
@@ -73,6 +88,8 @@ static void stage_point(vulkan_points *points, const struct frame *frame, size_t
         materials[point.material] = describe_material(&hits->materials[pixel]);
     }
     *to = point;
+    if (points->casts_rays)
+        stage_origin(points, frame->renderer->desc.scene, surface);
     points->point_count++;
 }
 
@@ -112,6 +129,8 @@ void points_record_upload(const vulkan_points *points, vulkan_commands *commands
     commands_copy(commands, &points->points_staging, &points->points,
                   points->point_count * sizeof(struct layout_point));
     commands_copy(commands, &points->materials_staging, &points->materials, materials * sizeof(struct layout_material));
+    if (points->casts_rays)
+        commands_copy(commands, &points->origins_staging, &points->origins, points->point_count * 4 * sizeof(float));
     commands_copy(commands, &points->misses_staging, &points->misses, points->miss_count * sizeof(uint32_t));
     commands_barrier(commands);
 }

@@ -9,14 +9,14 @@
 typedef struct vulkan_points {
     helio_device *device;
     uint32_t point_count, miss_count;
-    bool has_own_materials;
-    vulkan_buffer points, materials, misses;                         /* on the device */
-    vulkan_buffer points_staging, materials_staging, misses_staging; /* where the host writes them */
+    bool has_own_materials, casts_rays;
+    vulkan_buffer points, materials, misses, origins;                                 /* on the device */
+    vulkan_buffer points_staging, materials_staging, misses_staging, origins_staging; /* where the host writes them */
 } vulkan_points;
 
-/* For pictures of this size of the scene. */
-helio_status points_create(helio_device *device, const helio_scene *scene, uint32_t width, uint32_t height,
-                           vulkan_points *points);
+/* For pictures of this size of the scene. casts_rays: where shadow rays start is wanted as well. */
+helio_status points_create(helio_device *device, const helio_scene *scene, bool casts_rays, uint32_t width,
+                           uint32_t height, vulkan_points *points);
 void points_destroy(vulkan_points *points);
 
 /* Makes lists of the hits of a frame; not while a list of commands that copies them is on its way. */

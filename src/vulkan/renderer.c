@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "env/environment.h"
+#include "vulkan/bvh.h"
 #include "vulkan/light.h"
 #include "vulkan/points.h"
 
@@ -50,6 +51,7 @@ struct vulkan_renderer {
     VkPipeline shade_tiles;                      /* where points that shine weigh tiles; else nothing */
     vulkan_buffer step, counts, picture, object; /* on the device */
     vulkan_buffer picture_back, object_back;
+    vulkan_buffer nodes, triangles; /* for shadow rays; else nothing */
 };
 
 /* ---- creation ----------------------------------------------------------------------------- */
@@ -67,12 +69,38 @@ static shade_shape choose_shape(const helio_device *device)
     return shape;
 }
 
+static bool casts_rays(const helio_renderer *renderer)
+{
+    return !renderer->desc.no_visibility;
+}
+
+static helio_status upload_tree(struct vulkan_renderer *v, const bvh *tree)
+{
+    const uint64_t nodes = tree->node_count * sizeof *tree->nodes;
+    const uint64_t triangles = tree->triangle_count * sizeof *tree->triangles;
+    HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, nodes, 1, "the tree of boxes", &v->nodes));
+    HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, triangles, 1, "the triangles", &v->triangles));
+    HELIO_TRY(commands_upload(&v->slots[0].commands, &v->nodes, tree->nodes, nodes));
+    return commands_upload(&v->slots[0].commands, &v->triangles, tree->triangles, triangles);
+}
+
+static helio_status create_tree(struct vulkan_renderer *v, const helio_renderer *renderer)
+{
+    bvh tree;
+    if (!casts_rays(renderer))
+        return HELIO_OK;
+    HELIO_TRY(bvh_create(renderer->context, renderer->desc.scene->mesh, &tree));
+    helio_status status = upload_tree(v, &tree);
+    bvh_destroy(&tree);
+    return status;
+}
+
 static helio_status create_shade_tiles(struct vulkan_renderer *v, const helio_renderer *renderer)
 {
     const struct layout_state *state = &v->light.state;
     const uint32_t threads = device_is_software(v->device) ? TILE_THREADS_OF_SOFTWARE : TILE_THREADS;
     const uint32_t kinds = points_kinds(renderer->desc.scene);
-    const pipeline_desc desc = {"shade_tiles", 2, {threads, kinds}};
+    const pipeline_desc desc = {"shade_tiles", 3, {threads, kinds, casts_rays(renderer)}};
     if (state->light != LAYOUT_LIGHT_BINS || state->surface != LAYOUT_SURFACE_BRDF || kinds == 1u << LAYOUT_DIFFUSE)
         return HELIO_OK;
     return pipeline_create(v->device, &desc, &v->shade_tiles);
@@ -83,9 +111,9 @@ static helio_status create_passes(struct vulkan_renderer *v, const helio_rendere
     const struct layout_state *state = &v->light.state;
     v->shape = choose_shape(v->device);
     const pipeline_desc shade = {"shade",
-                                 6,
+                                 7,
                                  {v->shape.threads, v->shape.points, v->shape.lanes, points_kinds(renderer->desc.scene),
-                                  state->light, state->surface}};
+                                  state->light, state->surface, casts_rays(renderer)}};
     const pipeline_desc background = {"background", 1, {BACKGROUND_THREADS}};
     HELIO_TRY(pipeline_create(v->device, &shade, &v->shade));
     HELIO_TRY(pipeline_create(v->device, &background, &v->background));
@@ -113,16 +141,18 @@ static helio_status create_parts(struct vulkan_renderer *v, const helio_renderer
                                 &slot->counts_back));
     }
     HELIO_TRY(light_create(v->device, &v->slots[0].commands, renderer->pools, &v->light));
-    HELIO_TRY(points_create(v->device, desc->scene, desc->width, desc->height, &v->points));
+    HELIO_TRY(points_create(v->device, desc->scene, casts_rays(renderer), desc->width, desc->height, &v->points));
     HELIO_TRY(create_buffers(v, (uint64_t)desc->width * desc->height));
+    HELIO_TRY(create_tree(v, renderer));
     return create_passes(v, renderer);
 }
 
 static helio_status check(const helio_renderer *renderer)
 {
-    if (!renderer->desc.no_visibility)
-        return fail(HELIO_ERR_UNSUPPORTED, "shadow rays are not traced on graphics processors yet; do without "
-                                           "(--visibility none), or compute on the CPU (--backend cpu)");
+    if (renderer->desc.scene->ground == HELIO_GROUND_SHADOW)
+        return fail(HELIO_ERR_UNSUPPORTED,
+                    "graphics processors have no shadow catcher yet; take another ground, or compute "
+                    "on the CPU (--backend cpu)");
     if (renderer->desc.weighting == HELIO_WEIGHTING_COMPENSATED)
         return fail(HELIO_ERR_UNSUPPORTED,
                     "graphics processors have no compensated weights yet; take another weighting, "
@@ -154,7 +184,8 @@ void vulkan_renderer_destroy(struct vulkan_renderer *v)
 {
     if (v == NULL)
         return;
-    vulkan_buffer *const all[] = {&v->step, &v->counts, &v->picture, &v->object, &v->picture_back, &v->object_back};
+    vulkan_buffer *const all[] = {&v->step,         &v->counts,      &v->picture, &v->object,
+                                  &v->picture_back, &v->object_back, &v->nodes,   &v->triangles};
     for (int i = 0; i < LIGHT_SLOTS; i++) {
         commands_destroy(&v->slots[i].commands);
         buffer_destroy(v->device, &v->slots[i].counts_back);
@@ -188,6 +219,10 @@ static struct layout_step describe_step(const struct vulkan_renderer *v, const s
         .object = v->object.address,
         .misses = v->points.misses.address,
         .counts = v->counts.address,
+        .origins = v->points.origins.address,
+        .nodes = v->nodes.address,
+        .triangles = v->triangles.address,
+        .has_ground = desc->scene->ground != HELIO_GROUND_NONE,
         .intensity = desc->environment->intensity,
         .pool_seed = hash_combine(seed, frame->step.pass),
         .point_seed = frame->step_seed,
@@ -244,6 +279,7 @@ static helio_status finish_slot(struct vulkan_renderer *v, uint32_t index)
     add_times(&v->light, slot, index, &slot->info);
     slot->info.samples = whole_count(counts->samples);
     slot->info.samples_useful = whole_count(counts->useful);
+    slot->info.rays = v->points.casts_rays ? slot->info.samples_useful : 0;
     v->latest_info = slot->info;
     return HELIO_OK;
 }
