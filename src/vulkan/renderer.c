@@ -60,7 +60,7 @@ struct vulkan_renderer {
  * is for trying others on new hardware. */
 static shade_shape choose_shape(const helio_device *device)
 {
-    shade_shape shape = device_is_software(device) ? (shade_shape){64, 64, 1} : (shade_shape){64, 32, 16}, tried;
+    shade_shape shape = device_is_software(device) ? (shade_shape){64, 64, 1} : (shade_shape){64, 32, 8}, tried;
     const char *variable = getenv("HELIOSTAT_VULKAN_SHADE");
     if (variable != NULL && sscanf(variable, "%u,%u,%u", &tried.threads, &tried.points, &tried.lanes) == 3 &&
         tried.lanes > 0 && tried.threads <= 1024 && tried.points <= tried.threads && tried.points > 0 &&
