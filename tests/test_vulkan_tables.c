@@ -156,7 +156,7 @@ static void compare_maps(vulkan_world *w, uint32_t size, helio_weighting weighti
 
 static void tables_have_the_bits_of_the_cpu(void **state)
 {
-    static const uint32_t sizes[] = {1, 2, 3, 5, 16, 31, 100, 255, 512};
+    static const uint32_t sizes[] = {1, 2, 3, 5, 16, 31, 100, 512};
     vulkan_world w = world_make();
     (void)state;
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
@@ -167,7 +167,7 @@ static void tables_have_the_bits_of_the_cpu(void **state)
 /* With the work groups that hardware gets. */
 static void groups_of_many_threads_make_the_same(void **state)
 {
-    static const uint32_t sizes[] = {1, 2, 15, 64, 129, 601};
+    static const uint32_t sizes[] = {1, 2, 15, 129};
     vulkan_world w = world_make();
     (void)state;
     w.device->info.kind = HELIO_DEVICE_DISCRETE;
@@ -192,7 +192,7 @@ static void extreme_numbers_weigh_the_same(void **state)
     uint64_t seed = 11;
     (void)state;
     world_make_light(&w, SIZE, HELIO_WEIGHTING_SOLID_ANGLE, &by_face);
-    for (int round = 0; round < 8; round++) {
+    for (int round = 0; round < 4; round++) {
         fill_cube(w.environment, MAP_BLACK, 0);
         for (size_t i = 0; i < 6 * SIZE * SIZE * 3; i++)
             w.environment->cube[i] = random_bits(&seed) % 3 == 0
@@ -213,7 +213,7 @@ static void tables_follow_the_frame(void **state)
     vulkan_world w = world_make();
     (void)state;
     world_make_light(&w, 48, HELIO_WEIGHTING_SOLID_ANGLE, &by_face);
-    for (uint64_t frame = 0; frame < 40; frame++) {
+    for (uint64_t frame = 0; frame < 20; frame++) {
         fill_cube(w.environment, frame % 5 == 4 ? MAP_BLACK : MAP_RANDOM, frame);
         world_update(&w, 1, 0);
         compare_tables(&w);

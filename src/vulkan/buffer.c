@@ -107,3 +107,9 @@ void buffer_destroy(helio_device *device, vulkan_buffer *buffer)
     device->vk.FreeMemory(device->device, buffer->memory, NULL);
     *buffer = (vulkan_buffer){0};
 }
+
+void buffers_destroy(helio_device *device, vulkan_buffer *const *buffers)
+{
+    for (; *buffers != NULL; buffers++)
+        buffer_destroy(device, *buffers);
+}

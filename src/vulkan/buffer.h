@@ -26,4 +26,7 @@ helio_status buffer_create(helio_device *device, buffer_place place, uint64_t co
                            vulkan_buffer *out);
 void buffer_destroy(helio_device *device, vulkan_buffer *buffer);
 
+/* All of a list that ends with NULL. */
+void buffers_destroy(helio_device *device, vulkan_buffer *const *buffers);
+
 #endif

@@ -115,7 +115,7 @@ typedef struct bins {
 /* Area x number of triangles of both halves is least there. */
 static uint32_t best_bin(const bins *all)
 {
-    double after[BINS], least = INFINITY;
+    double after[BINS], least = HUGE_VAL;
     box sum = EMPTY;
     uint32_t count = 0, best = BINS / 2;
     for (uint32_t i = BINS - 1; i > 0; i--) {

@@ -42,11 +42,10 @@ void points_destroy(vulkan_points *points)
 {
     vulkan_buffer *const all[] = {&points->points,         &points->materials,         &points->misses,
                                   &points->points_staging, &points->materials_staging, &points->misses_staging,
-                                  &points->origins,        &points->origins_staging};
+                                  &points->origins,        &points->origins_staging,   NULL};
     if (points->device == NULL)
         return;
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-        buffer_destroy(points->device, all[i]);
+    buffers_destroy(points->device, all);
     *points = (vulkan_points){0};
 }
 

@@ -11,7 +11,6 @@
 #include "vulkan/light.h"
 #include "vulkan/points.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -56,17 +55,30 @@ struct vulkan_renderer {
 
 /* ---- creation ----------------------------------------------------------------------------- */
 
+/* Three numbers, separated by commas, that fit each other. */
+static bool read_shape(const char *text, shade_shape *shape)
+{
+    uint32_t *const numbers[] = {&shape->threads, &shape->points, &shape->lanes, NULL};
+    for (int i = 0; numbers[i] != NULL; i++) {
+        char *end;
+        const unsigned long number = strtoul(text, &end, 10);
+        if (end == text || number == 0 || number > 1024 || *end != (i < 2 ? ',' : 0))
+            return false;
+        *numbers[i] = (uint32_t)number;
+        text = end + 1;
+    }
+    return shape->points <= shape->threads && shape->threads % shape->lanes == 0;
+}
+
 /* Software takes a point with each thread, as it has no use for neighbours. HELIOSTAT_VULKAN_SHADE=THREADS,POINTS,LANES
  * is for trying others on new hardware. */
 static shade_shape choose_shape(const helio_device *device)
 {
-    shade_shape shape = device_is_software(device) ? (shade_shape){64, 64, 1} : (shade_shape){64, 32, 8}, tried;
     const char *variable = getenv("HELIOSTAT_VULKAN_SHADE");
-    if (variable != NULL && sscanf(variable, "%u,%u,%u", &tried.threads, &tried.points, &tried.lanes) == 3 &&
-        tried.lanes > 0 && tried.threads <= 1024 && tried.points <= tried.threads && tried.points > 0 &&
-        tried.threads % tried.lanes == 0)
-        shape = tried;
-    return shape;
+    shade_shape tried;
+    if (variable != NULL && read_shape(variable, &tried))
+        return tried;
+    return device_is_software(device) ? (shade_shape){64, 64, 1} : (shade_shape){64, 32, 8};
 }
 
 static bool casts_rays(const helio_renderer *renderer)
@@ -184,14 +196,13 @@ void vulkan_renderer_destroy(struct vulkan_renderer *v)
 {
     if (v == NULL)
         return;
-    vulkan_buffer *const all[] = {&v->step,         &v->counts,      &v->picture, &v->object,
-                                  &v->picture_back, &v->object_back, &v->nodes,   &v->triangles};
+    vulkan_buffer *const all[] = {&v->step,        &v->counts, &v->picture,   &v->object, &v->picture_back,
+                                  &v->object_back, &v->nodes,  &v->triangles, NULL};
     for (int i = 0; i < LIGHT_SLOTS; i++) {
         commands_destroy(&v->slots[i].commands);
         buffer_destroy(v->device, &v->slots[i].counts_back);
     }
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-        buffer_destroy(v->device, all[i]);
+    buffers_destroy(v->device, all);
     pipeline_destroy(v->device, &v->shade);
     pipeline_destroy(v->device, &v->background);
     pipeline_destroy(v->device, &v->shade_tiles);
