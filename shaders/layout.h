@@ -37,6 +37,11 @@
 #define LAYOUT_SURFACE_COSINE 1
 #define LAYOUT_SURFACE_BRDF 2
 
+/* layout_state.weighting: helio_weighting. */
+#define LAYOUT_BY_SOLID_ANGLE 0
+#define LAYOUT_BY_PAPER 1
+#define LAYOUT_COMPENSATED 2
+
 /* Materials, as bits: a pipeline is built for those that a scene has. */
 #define LAYOUT_DIFFUSE 0
 #define LAYOUT_PHONG 1
@@ -65,6 +70,7 @@ struct layout_row_sum {
 /* What is known of the map as a whole. */
 struct layout_sums {
     DOUBLE flux[LAYOUT_FACES];
+    DOUBLE worth[LAYOUT_FACES]; /* the flux, or of compensated weights that of what is above the level */
     STRUCT layout_row_sum weights[LAYOUT_FACES]; /* of the faces */
     UINT faces[LAYOUT_FACES + 1];                /* prefix sums of these */
     UINT uneven_faces;                           /* where it pays to aim at light, see evenness.h */
@@ -203,7 +209,7 @@ struct layout_push {
 };
 
 #ifndef VULKAN
-_Static_assert(sizeof(struct layout_sums) == 128, "as in the shaders");
+_Static_assert(sizeof(struct layout_sums) == 176, "as in the shaders");
 _Static_assert(sizeof(struct layout_material) == 48 && sizeof(struct layout_point) == 48, "as in the shaders");
 _Static_assert(sizeof(struct layout_state) == 22 * 8 + 18 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_step) == 9 * 8 + 36 * 4, "as in the shaders");

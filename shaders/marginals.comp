@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // One face for each work group: prefix sums over the sums of its rows, the density of a unit of weight in each row, and
-// the flux. As build_face() in src/sampling/tables.c, to the bit but for the divisions.
+// the flux. parameter[0]: 1 for the flux alone, where it is not the weights'. As build_face() in src/sampling/tables.c, to the bit but for the divisions.
 #include "common.glsl"
 #include "fixed_point.glsl"
 #include "scan.glsl"
@@ -61,21 +61,36 @@ double double_power(int exponent)
     return packDouble2x32(uvec2(0u, uint(clamp(exponent, -1022, 1023) + 1023) << 20));
 }
 
+double flux_of(layout_row_sum sum)
+{
+    return double(sum.sum) * double_power(-sum.exponent) * 4.0LF / (double(STATE.size) * double(STATE.size));
+}
+
+void find_flux(uint face)
+{
+    const int exponent = exponent_of_rows(true, face * STATE.size);
+    const layout_row_sum flux = layout_row_sum(sum_rows(true, face * STATE.size, 0u, exponent), exponent);
+    if (gl_LocalInvocationID.x == 0u)
+        STATE.sums.all.flux[face] = flux_of(flux);
+}
+
 void main()
 {
     begin_with_state();
     const uint face = gl_WorkGroupID.x, first = face * STATE.size, marginal = face * (STATE.size + 1u);
-    const int exponent = exponent_of_rows(false, first);
-    layout_row_sum weight = layout_row_sum(sum_rows(false, first, marginal, exponent), exponent), flux = weight;
-    if (STATE.weighting != 0u) {
-        const int flux_exponent = exponent_of_rows(true, first);
-        flux = layout_row_sum(sum_rows(true, first, marginal, flux_exponent), flux_exponent);
+    if (push.parameter[0] != 0u) {
+        find_flux(face);
+        return;
     }
+    const int exponent = exponent_of_rows(false, first);
+    const layout_row_sum weight = layout_row_sum(sum_rows(false, first, marginal, exponent), exponent);
     find_row_densities(first, weight.sum, exponent);
     if (gl_LocalInvocationID.x != 0u)
         return;
     STATE.marginals.at[marginal + STATE.size] = weight.sum;
     STATE.sums.all.weights[face] = weight;
-    STATE.sums.all.flux[face] = double(flux.sum) * double_power(-flux.exponent) * 4.0LF /
-                                (double(STATE.size) * double(STATE.size));
+    if (STATE.weighting == LAYOUT_BY_SOLID_ANGLE)
+        STATE.sums.all.flux[face] = flux_of(weight);
+    STATE.sums.all.worth[face] =
+        STATE.weighting != LAYOUT_BY_PAPER ? flux_of(weight) : STATE.sums.all.flux[face];
 }

@@ -88,7 +88,7 @@ float beta_of(uint face, vec3 normal)
 double worth_of_face(uint face, vec3 normal)
 {
     const float beta = beta_of(face, normal);
-    return (STEP.no_beta != 0u ? (beta > 0.0 ? 1.0LF : 0.0LF) : double(beta)) * STATE.sums.all.flux[face];
+    return (STEP.no_beta != 0u ? (beta > 0.0 ? 1.0LF : 0.0LF) : double(beta)) * STATE.sums.all.worth[face];
 }
 
 // Writes worths of the light techniques and returns their sum.
@@ -112,11 +112,13 @@ void expect_counts(vec3 normal, float share, inout prepared_point p)
     double worths[LAYOUT_FACES];
     const double total = find_worths(normal, p.bin, worths);
     const bool lit = total > 0.0LF;
-    const float samples = float(STEP.samples), by_surface = samples * share;
+    // Where compensated tables only say that there is nothing to compensate, the surface gets all.
+    const float of_dark = STATE.weighting == LAYOUT_COMPENSATED ? 1.0 : 0.0, samples = float(STEP.samples);
+    const float by_surface = samples * (lit ? share : of_dark);
     const double light = (lit ? double(samples - by_surface) : 0.0LF) / (lit ? total : 1.0LF);
     for (uint k = 0u; k < TECHNIQUES; k++)
         p.expected[k] = float(worths[k] * light);
-    p.surface_expected = lit ? by_surface : 0.0;
+    p.surface_expected = by_surface;
 }
 
 // ---- realised counts and windows ----

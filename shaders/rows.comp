@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // One row of the tables for each work group: weights of its texels, their common exponent, integers, prefix sums. As
-// src/sampling/tables_kernel.c, to the bit. parameter[0]: 1 for the fluxes of the paper's weighting, which take the
-// solid angle where the weights do not, and of which only the sums are wanted.
+// src/sampling/tables_kernel.c, to the bit. parameter[0]: 1 for fluxes, luminance x solid angle, where the weights
+// are something else: they come first, and only their sums are wanted.
 #include "common.glsl"
 #include "fixed_point.glsl"
 #include "scan.glsl"
@@ -19,6 +19,7 @@ struct row_of_texels {
     uint size, first, first_angle; // of its texels, in the cube and among the solid angles
     bool by_angle;
     float quarter_texels;
+    float level; // luminance that does not count, if any
 };
 
 float weights[TEXELS]; // of this thread's, from `begin` on
@@ -30,9 +31,13 @@ float weigh(row_of_texels row, uint column)
     const vec3 rgb = row.cube.at[row.first + column];
     precise float relative = row.by_angle ? row.angles.at[row.first_angle + column] * row.quarter_texels : 1.0;
     precise float luminance = 0.2126 * rgb.r + 0.7152 * rgb.g + 0.0722 * rgb.b;
-    precise float weight = luminance * relative;
     const ivec3 bits = floatBitsToInt(rgb);
-    const bool is_lit = max(max(bits.r, bits.g), bits.b) > 0;
+    bool is_lit = max(max(bits.r, bits.g), bits.b) > 0;
+    if (row.level > 0.0) {
+        luminance = luminance - row.level;
+        is_lit = luminance > 0.0;
+    }
+    precise float weight = luminance * relative;
     return is_lit && !(weight > LEAST_WEIGHT) ? LEAST_WEIGHT : max(weight, 0.0);
 }
 
@@ -76,14 +81,24 @@ uint sum_row(row_of_texels row, float factor, bool is_wanted)
     return sum;
 }
 
+// The mean of the map for compensated weights: a little more, so that rounding leaves nothing of a constant map.
+float find_level()
+{
+    double flux = 0.0LF;
+    for (uint face = 0u; face < LAYOUT_FACES; face++)
+        flux += STATE.sums.all.flux[face];
+    return float(flux / 12.566370614359172LF * (1.0LF + 1.0LF / 16384.0LF));
+}
+
 void main()
 {
     begin_with_state();
     const uint index = gl_WorkGroupID.x, size = STATE.size;
-    const bool only_sum = push.parameter[0] != 0u, by_angle = only_sum || STATE.weighting == 0u;
+    const bool only_sum = push.parameter[0] != 0u, by_angle = only_sum || STATE.weighting != LAYOUT_BY_PAPER;
+    const float level = !only_sum && STATE.weighting == LAYOUT_COMPENSATED ? find_level() : 0.0;
     precise float quarter_texels = 0.25 * float(size) * float(size);
     row_of_texels row = row_of_texels(STATE.cube, STATE.solid_angles, size, index * size, index % size * size,
-                                            by_angle, quarter_texels);
+                                            by_angle, quarter_texels, level);
     const int exponent = fixed_point_exponent(find_largest(row), summand_bits(size));
     const uint sum = sum_row(row, power_of_two(exponent), !only_sum);
     if (gl_LocalInvocationID.x != 0u)

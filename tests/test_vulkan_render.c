@@ -192,6 +192,7 @@ static void settings_do_what_they_do_on_the_cpu(void **state)
         {.strategy = HELIO_STRATEGY_FACE, .aa = 3, .spp = 4, .pool_length = 64, .no_beta = true},
         {.strategy = HELIO_STRATEGY_FACE, .aa = 2, .spp = 20, .pool_length = 64, .no_decorrelation = true},
         {.strategy = HELIO_STRATEGY_PRODUCT, .spp = 100, .bins = 3, .background = HELIO_BACKGROUND_NONE},
+        {.strategy = HELIO_STRATEGY_FACE_BRDF, .weighting = HELIO_WEIGHTING_COMPENSATED},
         {.strategy = HELIO_STRATEGY_LIGHT, .weighting = HELIO_WEIGHTING_PAPER, .background = HELIO_BACKGROUND_NONE},
     };
     (void)state;

@@ -165,10 +165,6 @@ static helio_status check(const helio_renderer *renderer)
         return fail(HELIO_ERR_UNSUPPORTED,
                     "graphics processors have no shadow catcher yet; take another ground, or compute "
                     "on the CPU (--backend cpu)");
-    if (renderer->desc.weighting == HELIO_WEIGHTING_COMPENSATED)
-        return fail(HELIO_ERR_UNSUPPORTED,
-                    "graphics processors have no compensated weights yet; take another weighting, "
-                    "or compute on the CPU (--backend cpu)");
     if (renderer->desc.aovs || renderer->extras.keeps_sums || renderer->extras.lighting != NULL)
         return fail(HELIO_ERR_UNSUPPORTED, "graphics processors make pictures alone; for layers and references compute "
                                            "on the CPU (--backend cpu)");

@@ -49,7 +49,7 @@ helio_status light_create_tables(vulkan_light *light, vulkan_commands *commands)
 {
     const helio_tables *tables = light->shape->tables;
     const uint64_t size = tables->size;
-    const bool has_fluxes = tables->weighting == HELIO_WEIGHTING_PAPER;
+    const bool has_fluxes = tables->weighting != HELIO_WEIGHTING_SOLID_ANGLE;
     light->state.size = tables->size;
     light->state.weighting = (uint32_t)tables->weighting;
     HELIO_TRY(create_buffers(light, has_fluxes));
@@ -64,9 +64,13 @@ void light_record_tables(vulkan_light *light, vulkan_commands *commands)
     const struct layout_push weights = light_push(light, 0, 0), fluxes = light_push(light, 0, 1);
     const uint32_t rows = CUBE_FACES * light->state.size;
     commands_label(commands, "tables");
-    commands_dispatch(commands, light->passes[PASS_ROWS], &weights, rows);
-    if (light->state.weighting == (uint32_t)HELIO_WEIGHTING_PAPER)
+    if (light->state.weighting != (uint32_t)HELIO_WEIGHTING_SOLID_ANGLE) {
         commands_dispatch(commands, light->passes[PASS_ROWS], &fluxes, rows);
+        commands_barrier(commands);
+        commands_dispatch(commands, light->passes[PASS_MARGINALS], &fluxes, CUBE_FACES);
+        commands_barrier(commands);
+    }
+    commands_dispatch(commands, light->passes[PASS_ROWS], &weights, rows);
     commands_barrier(commands);
     commands_dispatch(commands, light->passes[PASS_MARGINALS], &weights, CUBE_FACES);
     commands_barrier(commands);
