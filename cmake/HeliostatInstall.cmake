@@ -5,10 +5,16 @@
 include(CMakePackageConfigHelpers)
 
 install(TARGETS heliostat EXPORT heliostatTargets)
-install(DIRECTORY include/heliostat TYPE INCLUDE FILES_MATCHING PATTERN "*.h")
 install(FILES assets/sunrise.hdr assets/LICENSE-CC0.txt DESTINATION ${CMAKE_INSTALL_DATADIR}/heliostat)
 # The tables are in the library; their licence wants to be passed on with it.
 install(DIRECTORY assets/sky DESTINATION ${CMAKE_INSTALL_DATADIR}/heliostat)
+if(HELIO_WITH_VULKAN)
+    install(DIRECTORY shaders/ DESTINATION ${CMAKE_INSTALL_DATADIR}/heliostat/shaders FILES_MATCHING PATTERN "*.glsl"
+            PATTERN "layout.h")
+else()
+    set(WITHOUT_VULKAN PATTERN "vulkan.h" EXCLUDE) # it needs a header that may not be there
+endif()
+install(DIRECTORY include/heliostat TYPE INCLUDE FILES_MATCHING PATTERN "*.h" ${WITHOUT_VULKAN})
 install(FILES LICENSE TYPE DOC)
 if(TARGET heliostat_program)
     install(TARGETS heliostat_program)

@@ -154,10 +154,8 @@ void round_counts(uint seed, inout prepared_point p)
     p.surface_count = uint(sum + double(p.surface_expected) * scale) - given;
 }
 
-prepared_point prepare(shading_point given)
+prepared_point prepare_with(shading_point given, scene_material m, uint seed)
 {
-    const uint seed = STEP.same_seed != 0u ? STEP.point_seed : hash_combine(STEP.point_seed, given.pixel);
-    const scene_material m = read_material(given.material_index);
     const vec3 normal = turned(given.normal);
     prepared_point p;
     p.seed = seed;
@@ -172,4 +170,10 @@ prepared_point prepare(shading_point given)
     round_counts(seed, p);
     p.surface_seed = hash_combine(seed, LAYOUT_STREAM_SURFACE);
     return p;
+}
+
+prepared_point prepare(shading_point given)
+{
+    const uint seed = STEP.same_seed != 0u ? STEP.point_seed : hash_combine(STEP.point_seed, given.pixel);
+    return prepare_with(given, read_material(given.material_index), seed);
 }

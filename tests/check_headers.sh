@@ -17,6 +17,10 @@ check() { # compiler, language, standard, header
 count=0
 for path in "$source"/include/heliostat/*.h; do
     header=$(basename "$path")
+    if [ "$header" = vulkan.h ] && ! echo '#include <vulkan/vulkan.h>' | "$cc" -x c -fsyntax-only - 2>/dev/null; then
+        echo "$header is skipped: there is no <vulkan/vulkan.h>"
+        continue
+    fi
     check "$cc" c c11 "$header"
     check "$cxx" c++ c++17 "$header"
     count=$((count + 1))

@@ -41,6 +41,13 @@ cmake -S "$source/examples" -B "$folder/example" -G Ninja -DCMAKE_PREFIX_PATH="$
 cmake --build "$folder/example" >"$folder/log" || { cat "$folder/log"; fail 'building the example failed'; }
 run_example "$folder/example/estimate"
 
+if [ -x "$folder/example/vulkan_light" ]; then
+    echo '-- light on an engine'"'"'s own device'
+    status=0
+    "$folder/example/vulkan_light" || status=$?
+    [ "$status" = 0 ] || [ "$status" = 77 ] || fail 'vulkan_light failed'
+fi
+
 echo '-- the example through pkg-config'
 PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name heliostat.pc)")
 export PKG_CONFIG_PATH

@@ -147,6 +147,15 @@ void commands_barrier(vulkan_commands *commands)
     commands->device->vk.CmdPipelineBarrier(commands->buffer, stages, stages, 0, 1, &barrier, 0, NULL, 0, NULL);
 }
 
+void commands_barrier_all(vulkan_commands *commands)
+{
+    const VkMemoryBarrier barrier = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                                     .srcAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT,
+                                     .dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT};
+    commands->device->vk.CmdPipelineBarrier(commands->buffer, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, stages_of(commands),
+                                            0, 1, &barrier, 0, NULL, 0, NULL);
+}
+
 void commands_copy(vulkan_commands *commands, const vulkan_buffer *from, const vulkan_buffer *to, uint64_t bytes)
 {
     const VkBufferCopy region = {.size = bytes};

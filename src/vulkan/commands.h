@@ -35,6 +35,9 @@ helio_status commands_wait(vulkan_commands *commands);
 /* All of these but what was begun last is between commands_begin() and commands_submit(). Nothing waits for what is
  * before it, unless there is a barrier between. */
 void commands_barrier(vulkan_commands *commands);
+
+/* For lists of others: what comes behind also waits for all that is before, whoever reads or writes there. */
+void commands_barrier_all(vulkan_commands *commands);
 void commands_copy(vulkan_commands *commands, const vulkan_buffer *from, const vulkan_buffer *to, uint64_t bytes);
 
 /* At most 65536 bytes, a multiple of 4, known now. */

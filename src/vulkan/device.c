@@ -77,7 +77,7 @@ static helio_status create_device(helio_device *device)
     return HELIO_OK;
 }
 
-static helio_status create_pipeline_layout(helio_device *device)
+helio_status device_create_layout(helio_device *device)
 {
     const VkPushConstantRange range = {.stageFlags = VK_SHADER_STAGE_COMPUTE_BIT, .size = sizeof(struct layout_push)};
     const VkPipelineLayoutCreateInfo create = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
@@ -120,7 +120,7 @@ static helio_status set_up(helio_device *device, const helio_device_desc *desc)
         HELIO_TRY(listen(device));
     HELIO_TRY(choose(device, desc->name));
     HELIO_TRY(create_device(device));
-    return create_pipeline_layout(device);
+    return device_create_layout(device);
 }
 
 helio_status helio_device_create(helio_context *context, const helio_device_desc *desc, helio_device **out)
@@ -151,11 +151,12 @@ void helio_device_destroy(helio_device *device)
     if (device->device != VK_NULL_HANDLE) {
         vk->DeviceWaitIdle(device->device);
         vk->DestroyPipelineLayout(device->device, device->pipeline_layout, NULL);
-        vk->DestroyDevice(device->device, NULL);
+        if (!device->is_imported)
+            vk->DestroyDevice(device->device, NULL);
     }
     if (device->messenger != VK_NULL_HANDLE)
         vk->DestroyDebugUtilsMessengerEXT(device->instance, device->messenger, NULL);
-    if (device->instance != VK_NULL_HANDLE)
+    if (device->instance != VK_NULL_HANDLE && !device->is_imported)
         vk->DestroyInstance(device->instance, NULL);
     vulkan_functions_close(&device->vk);
     context_release(device->context, device);

@@ -21,6 +21,7 @@ struct helio_device {
     uint32_t queue_family, upload_family;
     bool uploads_are_timed;
     bool resets_queries; /* the host may reset clocks */
+    bool is_imported;    /* instance and device are somebody else's */
     VkPhysicalDeviceMemoryProperties memory;
     float timestamp_period; /* ns of a tick; 0: it cannot tell the time */
     helio_device_info info;
@@ -33,6 +34,9 @@ static inline bool device_is_software(const helio_device *device)
 {
     return device->info.kind == HELIO_DEVICE_SOFTWARE;
 }
+
+/* Makes the layout that all pipelines share. */
+helio_status device_create_layout(helio_device *device);
 
 /* Names an object for tools that look at what a program does. */
 void device_name_object(const helio_device *device, VkObjectType type, uint64_t object, const char *name);

@@ -138,7 +138,7 @@ static void describe_memory(const vulkan_functions *vk, device_choice *choice)
             choice->info.memory = memory.memoryHeaps[i].size;
 }
 
-static void describe(const vulkan_functions *vk, VkPhysicalDevice physical, device_choice *choice)
+void device_choice_describe(const vulkan_functions *vk, VkPhysicalDevice physical, device_choice *choice)
 {
     VkPhysicalDeviceMaintenance3Properties limits = {.sType =
                                                          VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES};
@@ -197,7 +197,7 @@ helio_status device_choice_list(const vulkan_functions *vk, VkInstance instance,
         return fail(HELIO_ERR_UNSUPPORTED,
                     "Vulkan finds no device on this machine; install a driver, or compute on the CPU");
     for (uint32_t i = 0; i < *count; i++)
-        describe(vk, physical[i], &choices[i]);
+        device_choice_describe(vk, physical[i], &choices[i]);
     qsort(choices, *count, sizeof *choices, compare);
     return HELIO_OK;
 }

@@ -21,6 +21,9 @@ typedef struct device_choice {
 /* An instance, with the validation layer and its messenger's extension where validate. */
 helio_status device_choice_instance(vulkan_functions *vk, bool validate, VkInstance *instance);
 
+/* Looks at one. */
+void device_choice_describe(const vulkan_functions *vk, VkPhysicalDevice physical, device_choice *choice);
+
 /* choices: [DEVICE_CHOICES], the best first. HELIO_ERR_UNSUPPORTED where there is none. */
 helio_status device_choice_list(const vulkan_functions *vk, VkInstance instance, device_choice *choices,
                                 uint32_t *count);

@@ -118,13 +118,24 @@ static void copy_piece(void *data, size_t piece)
     memcpy(to + first, (const char *)light->environment->cube + first, bytes);
 }
 
+static void stage(vulkan_light *light, uint32_t slot)
+{
+    light->slot = slot;
+    context_parallel_for(light->environment->context, (light_cube_bytes(light) + COPY_PIECE - 1) / COPY_PIECE,
+                         copy_piece, light);
+}
+
+void light_record_cube(vulkan_light *light, vulkan_commands *commands, uint32_t slot)
+{
+    stage(light, slot);
+    commands_copy(commands, &light->slots[slot].staging, &light->slots[slot].cube, light_cube_bytes(light));
+}
+
 helio_status light_send(vulkan_light *light, uint32_t slot)
 {
     light_slot *own = &light->slots[slot];
-    light->slot = slot;
     HELIO_TRY(commands_begin(&own->upload)); /* when the one before has left the staging */
-    context_parallel_for(light->environment->context, (light_cube_bytes(light) + COPY_PIECE - 1) / COPY_PIECE,
-                         copy_piece, light);
+    stage(light, slot);
     own->started = commands_mark(&own->upload);
     commands_copy(&own->upload, &own->staging, &own->cube, light_cube_bytes(light));
     own->done = commands_mark(&own->upload);

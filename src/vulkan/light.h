@@ -66,6 +66,9 @@ uint64_t light_cube_bytes(const vulkan_light *light);
  */
 helio_status light_send(vulkan_light *light, uint32_t slot);
 
+/* The same as part of a list that makes the tables as well, without a barrier behind. */
+void light_record_cube(vulkan_light *light, vulkan_commands *commands, uint32_t slot);
+
 /* When the cube has come: what the list that makes the tables is to be submitted after. */
 VkSemaphore light_sent(const vulkan_light *light);
 
