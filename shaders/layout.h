@@ -26,6 +26,7 @@
 #define LAYOUT_FACES 6
 #define LAYOUT_TECHNIQUES 7 /* as in strategy.h: the last is the surface's */
 #define LAYOUT_TILES_PER_EDGE 16
+#define LAYOUT_TILE_GROUP 16 /* tiles that follow each other */
 #define LAYOUT_TILES_MOST (LAYOUT_FACES * LAYOUT_TILES_PER_EDGE * LAYOUT_TILES_PER_EDGE)
 
 /* layout_state.light and .surface: strategy_light and strategy_surface. */
@@ -162,6 +163,7 @@ struct layout_state {
     ADDRESS(uints, list_starts);   /* [tiles + 1] */
     ADDRESS(vectors, listed);      /* [list_capacity][2]: as in pools, given the tile */
     ADDRESS(doubles, moments);     /* [6][T][T][3]: see tile_moments in evenness.c */
+    ADDRESS(vectors, groups);  /* [tiles / LAYOUT_TILE_GROUP]: direction to the middle, edge, see tiles.h */
     UINT size;                     /* R */
     UINT weighting;                /* helio_weighting */
     UINT light, surface;           /* parts of the strategy */
@@ -211,7 +213,7 @@ struct layout_push {
 #ifndef VULKAN
 _Static_assert(sizeof(struct layout_sums) == 176, "as in the shaders");
 _Static_assert(sizeof(struct layout_material) == 48 && sizeof(struct layout_point) == 48, "as in the shaders");
-_Static_assert(sizeof(struct layout_state) == 22 * 8 + 18 * 4, "as in the shaders");
+_Static_assert(sizeof(struct layout_state) == 23 * 8 + 18 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_step) == 9 * 8 + 36 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_push) == 32, "as in the shaders");
 #endif

@@ -23,8 +23,13 @@ const uint LIGHT = LAYOUT_LIGHT_BINS, SURFACE = LAYOUT_SURFACE_BRDF;
 #include "rays.glsl"
 #include "samples.glsl"
 
-shared uint sums[LAYOUT_TILES_MOST + 1]; // before each tile; at first the bits of the weights
-shared vec4 parts[SCAN_MOST];
+const uint GROUPS_MOST = LAYOUT_TILES_MOST / LAYOUT_TILE_GROUP, NOWHERE = GROUPS_MOST;
+
+// Groups of tiles that reach above the point's horizon, in the order of the tiles; and where each group is among them, or
+// NOWHERE.
+shared uint groups[GROUPS_MOST], places[GROUPS_MOST];
+shared uint sums[LAYOUT_TILES_MOST + 1]; // before each tile of these; at first the bits of the weights
+shared float parts[4u * SCAN_MOST];
 
 // See tile_lobe in point_tiles.h.
 struct tile_lobe {
@@ -63,27 +68,56 @@ float lobe_value(brdf b, tile_lobe lobe, vec3 direction)
     return soft * (lobe.diffuse + lobe.specular * (twice * twice) / (safe * safe * masking));
 }
 
-float weigh(brdf b, tile_lobe lobe, uint position)
+// Returns how many groups there are, each thread having looked at some that follow each other.
+uint choose_groups(vec3 normal)
 {
-    const vec4 tile = STATE.tiles.at[position];
-    if (tile.w == 0.0 || dot(b.normal, tile.xyz) <= -STATE.tile_edge)
-        return 0.0;
-    return tile.w * lobe_value(b, lobe, tile.xyz);
+    const uint all = (STATE.tile_count + LAYOUT_TILE_GROUP - 1u) / LAYOUT_TILE_GROUP;
+    const uint each = (all + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x;
+    const uint begin = min(each * gl_LocalInvocationID.x, all), end = min(begin + each, all);
+    uint own = 0u, count;
+    for (uint i = begin; i < end; i++) {
+        const vec4 group = STATE.groups.at[i];
+        places[i] = dot(normal, group.xyz) > -group.w ? own++ : NOWHERE;
+    }
+    const uint before = sum_before_in_group(own, count);
+    for (uint i = begin; i < end; i++)
+        if (places[i] != NOWHERE) {
+            places[i] += before;
+            groups[places[i]] = i;
+        }
+    barrier();
+    return count;
 }
 
-// Fills in the sums and returns that of all tiles.
-uint weigh_tiles(brdf b)
+// Tile i of the chosen groups.
+uint position_of(uint i)
+{
+    return groups[i / LAYOUT_TILE_GROUP] * LAYOUT_TILE_GROUP + i % LAYOUT_TILE_GROUP;
+}
+
+float weigh(brdf b, tile_lobe lobe, uint position)
+{
+    if (position >= STATE.tile_count)
+        return 0.0;
+    const vec4 tile = STATE.tiles.at[position];
+    return tile.w > 0.0 ? tile.w * lobe_value(b, lobe, tile.xyz) : 0.0;
+}
+
+// Fills in the sums of `count` tiles and returns that of all. Threads take pieces of odd lengths, so that neighbours reach
+// for different banks of memory.
+uint weigh_tiles(brdf b, uint count)
 {
     const tile_lobe lobe = prepare_lobe(b);
-    const uint count = STATE.tile_count, each = (count + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x;
+    const uint each = (count + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x | 1u;
     const uint begin = min(each * gl_LocalInvocationID.x, count), end = min(begin + each, count);
     uint largest = 0u, own = 0u, total;
     for (uint i = gl_LocalInvocationID.x; i < count; i += gl_WorkGroupSize.x) {
-        const uint bits = floatBitsToUint(weigh(b, lobe, i));
+        const uint bits = floatBitsToUint(weigh(b, lobe, position_of(i)));
         sums[i] = bits;
         largest = max(largest, bits);
     }
-    const float factor = power_of_two(fixed_point_exponent(greatest_in_group(largest), summand_bits(count)));
+    const int exponent = fixed_point_exponent(greatest_in_group(largest), summand_bits(STATE.tile_count));
+    const float factor = power_of_two(exponent);
     for (uint i = begin; i < end; i++)
         own += fixed_point_integer(uintBitsToFloat(sums[i]), factor);
     uint before = sum_before_in_group(own, total);
@@ -105,9 +139,9 @@ uint64_t part_of(uint64_t x, uint fraction)
     return (x >> 32) * fraction + (((x & 0xffffffffUL) * fraction) >> 32);
 }
 
-uint find_tile(uint whole)
+uint find_tile(uint whole, uint count)
 {
-    uint low = 0u, high = STATE.tile_count;
+    uint low = 0u, high = count;
     while (high - low > 1u) {
         const uint middle = low + (high - low) / 2u;
         if (sums[middle] <= whole)
@@ -118,15 +152,12 @@ uint find_tile(uint whole)
     return low;
 }
 
-// Sample i of all that the tiles give to the point: places at equal steps through the sums, from a random start. What is
-// left of a place in its tile counts through the tile's list.
-void add_tile_sample(prepared_point p, uint i, uint total, inout vec4 sum)
+// A sample at a place in the sums, in 2^-20 of a unit: what is left of it in its tile counts through the tile's list.
+void add_tile_sample(prepared_point p, uint64_t place, uint count, uint total, inout vec4 sum)
 {
-    const uint64_t stride = (uint64_t(total) << 20) / p.end[0];
-    const uint64_t place = i * stride + part_of(stride, hash_combine(p.seed, LAYOUT_STREAM_WINDOW));
-    const uint position = find_tile(uint(place >> 20)), weight = sums[position + 1u] - sums[position];
-    const uint start = STATE.list_starts.at[position], length = STATE.list_starts.at[position + 1u] - start;
-    const double rest = double(place - (uint64_t(sums[position]) << 20));
+    const uint tile = find_tile(uint(place >> 20), count), weight = sums[tile + 1u] - sums[tile];
+    const uint position = position_of(tile), start = STATE.list_starts.at[position], length = STATE.list_starts.at[position + 1u] - start;
+    const double rest = double(place - (uint64_t(sums[tile]) << 20));
     const uint element = uint(rest * double(length) / (double(weight) * 1048576.0LF));
     const uint index = 2u * (start + min(element, length - 1u));
     const vec4 direction = STATE.listed.at[index];
@@ -137,22 +168,44 @@ void add_tile_sample(prepared_point p, uint i, uint total, inout vec4 sum)
 
 float density_of_tiles(prepared_point p, face_place at, uint total)
 {
-    const uint position = tile_position(at), weight = sums[position + 1u] - sums[position];
+    const uint position = tile_position(at), place = places[position / LAYOUT_TILE_GROUP];
+    const uint tile = place * LAYOUT_TILE_GROUP + position % LAYOUT_TILE_GROUP;
+    const uint weight = place != NOWHERE ? sums[tile + 1u] - sums[tile] : 0u;
     return weight != 0u ? p.expected[0] * (float(weight) / float(total) * tile_density(at)) : 0.0;
 }
 
-vec4 light_point(prepared_point p, uint total)
+// Places of samples are at equal steps through the sums of `count` tiles, from a random start.
+vec4 light_point(prepared_point p, uint count, uint total)
 {
     vec4 sum = vec4(0.0);
+    const uint64_t stride = p.end[0] != 0u ? (uint64_t(total) << 20) / p.end[0] : 0UL;
+    const uint64_t start = part_of(stride, hash_combine(p.seed, LAYOUT_STREAM_WINDOW));
     origin_of_rays = read_origin(group_index());
     for (uint i = gl_LocalInvocationID.x; i < p.end[0]; i += gl_WorkGroupSize.x)
-        add_tile_sample(p, i, total, sum);
+        add_tile_sample(p, i * stride + start, count, total, sum);
     for (uint i = gl_LocalInvocationID.x; i < p.surface_count; i += gl_WorkGroupSize.x) {
         const surface_sample drawn = draw_surface_sample(p, i);
         if (drawn.counts)
             add_surface_sample(p, drawn, density_of_tiles(p, drawn.at, total), sum);
     }
     return sum;
+}
+
+// Each of four threads adds up one of the four numbers of all.
+vec4 sum_of_group(vec4 own)
+{
+    const uint thread = gl_LocalInvocationID.x, threads = gl_WorkGroupSize.x;
+    for (uint c = 0u; c < 4u; c++)
+        parts[c * threads + thread] = own[c];
+    barrier();
+    float sum = 0.0;
+    for (uint i = 0u; thread < 4u && i < threads; i++)
+        sum += parts[thread * threads + i];
+    barrier();
+    if (thread < 4u)
+        parts[thread] = sum;
+    barrier();
+    return vec4(parts[0], parts[1], parts[2], parts[3]);
 }
 
 void main()
@@ -164,15 +217,11 @@ void main()
     prepared_point p = prepare(given);
     if (!weighs_tiles(p))
         return;
-    const uint total = weigh_tiles(p.surface), thread = gl_LocalInvocationID.x;
+    const uint count = choose_groups(p.surface.normal) * LAYOUT_TILE_GROUP, total = weigh_tiles(p.surface, count);
     p.surface.specular_share = 1.0; // of what the tiles leave over
-    parts[thread] = total != 0u ? light_point(p, total) : vec4(0.0);
-    barrier();
-    if (thread != 0u)
+    const vec4 sum = sum_of_group(total != 0u ? light_point(p, count, total) : vec4(0.0));
+    if (gl_LocalInvocationID.x != 0u)
         return;
-    vec4 sum = vec4(0.0);
-    for (uint i = 0u; i < gl_WorkGroupSize.x; i++)
-        sum += parts[i];
     film_add(given.pixel, sum.rgb * STEP.intensity, true, given.hit == LAYOUT_HIT_OBJECT);
     if (total != 0u)
         count_up(p.end[0] + p.surface_count, uint(sum.w + 0.5));

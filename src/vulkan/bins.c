@@ -6,6 +6,7 @@
 #include "vulkan/light.h"
 
 enum { THREADS = 64, THREADS_OF_TILE = 32 };
+_Static_assert((int)LAYOUT_TILE_GROUP == (int)TILE_GROUP && (int)LAYOUT_TILES_MOST == (int)TILES_MOST, "as in tiles.h");
 
 /* ---- creation ----------------------------------------------------------------------------- */
 
@@ -27,6 +28,7 @@ static helio_status create_buffers(vulkan_light *light)
         {&light->tile_totals, BUFFER_ON_DEVICE, t->count, sizeof(struct layout_row_sum), "the sums of tiles"},
         {&light->tile_sums, BUFFER_ON_DEVICE, (uint64_t)t->count * t->stride, sizeof(uint32_t), "the rows of tiles"},
         {&light->segment_densities, BUFFER_ON_DEVICE, segments, sizeof(float), "the densities of tiles"},
+        {&light->groups, BUFFER_ON_DEVICE, t->group_count, 4 * sizeof(float), "the groups of tiles"},
         {&light->bins, BUFFER_ON_DEVICE, bins->count, 4 * sizeof(float), "the bins"},
         {&light->bin_sums, BUFFER_ON_DEVICE, (uint64_t)bins->count * (t->count + 1), sizeof(uint32_t),
          "the sums of bins"},
@@ -57,6 +59,7 @@ static void tell(vulkan_light *light)
     state->list_starts = light->list_starts.address;
     state->listed = light->listed.address;
     state->moments = light->moments.address;
+    state->groups = light->groups.address;
     state->is_automatic = is_automatic(light);
     state->tiles_per_edge = bins->tiles->per_edge;
     state->tile_count = bins->tiles->count;
@@ -95,6 +98,7 @@ static helio_status create_passes(vulkan_light *light)
 typedef struct geometry {
     uint32_t grid[TILES_MOST], positions[TILES_MOST];
     float tiles[TILES_MOST][4];
+    float groups[TILE_GROUPS][4];
     float bins[CUBE_FACES * NORMAL_BINS_MOST * NORMAL_BINS_MOST][4];
 } geometry;
 
@@ -108,6 +112,10 @@ static void fill_geometry(const normal_bins *bins, geometry *g)
         g->tiles[i][1] = t->y[i];
         g->tiles[i][2] = t->z[i];
     }
+    for (uint32_t i = 0; i < t->group_count; i++) {
+        vec3_to((vec3){t->group_x[i], t->group_y[i], t->group_z[i]}, g->groups[i]);
+        g->groups[i][3] = t->group_edge[i];
+    }
     for (uint32_t i = 0; i < bins->count; i++) {
         vec3_to(bins->bins[i].centre, g->bins[i]);
         g->bins[i][3] = bins->bins[i].reach;
@@ -120,6 +128,8 @@ static helio_status upload_geometry(vulkan_light *light, vulkan_commands *comman
     HELIO_TRY(commands_upload(commands, &light->tile_grid, g->grid, tile_count * sizeof *g->grid));
     HELIO_TRY(commands_upload(commands, &light->tile_positions, g->positions, tile_count * sizeof *g->positions));
     HELIO_TRY(commands_upload(commands, &light->tiles, g->tiles, tile_count * sizeof *g->tiles));
+    HELIO_TRY(commands_upload(commands, &light->groups, g->groups,
+                              light->shape->bins->tiles->group_count * sizeof *g->groups));
     return commands_upload(commands, &light->bins, g->bins, bin_count * sizeof *g->bins);
 }
 

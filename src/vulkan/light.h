@@ -48,6 +48,7 @@ typedef struct vulkan_light {
     vulkan_buffer pools;
     /* Of bins of normals; nothing for other strategies. */
     vulkan_buffer tile_grid, tile_positions, tiles, tile_totals, tile_sums, segment_densities;
+    vulkan_buffer groups;
     vulkan_buffer moments; /* where the strategy may be left */
     vulkan_buffer bins, bin_sums, bin_shares, greatest, list_starts, listed;
     VkPipeline passes[LIGHT_PASSES]; /* those that the strategy needs */

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BACKGROUND_THREADS = 64, TILE_THREADS = 64, TILE_THREADS_OF_SOFTWARE = 8 };
+enum { BACKGROUND_THREADS = 64, TILE_THREADS = 32, TILE_THREADS_OF_SOFTWARE = 8 };
 static const float DEFAULT_BRDF_SHARE = 0.5f;
 
 /* How work is shared out when points are lit, see shade.comp. */
