@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Frames on a graphics processor: the cube is sent each time, camera rays are kept, the picture is left where it is. */
+ * Frames on a graphics processor: the cube is sent each time, the picture is left where it is. */
 #include "bench_frame.h"
 
 #include "machine.h"
@@ -41,7 +41,8 @@ static int read_picture(frame_work *work, double *milliseconds)
  * clock, divided by their number. */
 static helio_status render_row(frame_work *work, double *milliseconds)
 {
-    helio_frame_desc desc = {.camera = work->camera, .no_picture = true};
+    helio_frame_desc desc = {
+        .camera = work->camera, .no_picture = true, .retrace = work->point.scenario == BENCH_TRACED};
     helio_status status = HELIO_OK;
     const double start = machine_milliseconds();
     for (uint32_t i = 0; status == HELIO_OK && i < work->row; i++) {
@@ -143,11 +144,11 @@ static int measure_copy(bench *b, double *rate)
 
 int bench_run_device(bench *b)
 {
-    static const bench_axis axes[] = {BENCH_BY_STRATEGY, BENCH_BY_SPP, BENCH_BY_CUBE};
+    static const bench_axis axes[] = {BENCH_BY_STRATEGY, BENCH_BY_SCENARIO, BENCH_BY_SPP, BENCH_BY_CUBE};
     const uint32_t *size = b->plan->options->size;
     char title[256];
-    snprintf(title, sizeof title, "Frames of %.60s, %ux%u, the cube sent for each, no shadow rays, camera rays kept",
-             b->plan->mesh_name, size[0], size[1]);
+    snprintf(title, sizeof title, "Frames of %.60s, %ux%u, the cube sent for each, no shadow rays", b->plan->mesh_name,
+             size[0], size[1]);
     const bench_subject subject = {title, "frames/s", sizeof(frame_work), create, fill, frame_work_release};
     double copy_rate = 0;
     int code = measure_copy(b, &copy_rate);

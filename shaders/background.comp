@@ -6,17 +6,7 @@
 #include "random.glsl"
 #include "cube.glsl"
 #include "film.glsl"
-
-// Where the camera sample looks through the picture, in pixels.
-vec2 position_of(uint pixel)
-{
-    const vec2 corner = vec2(pixel % STEP.width, pixel / STEP.width);
-    if (STEP.camera_sample == 0xffffffffu)
-        return corner + 0.5; // the centre, as it is the only one
-    const uint seed = hash_combine(hash_combine(STEP.camera_seed, 0xca3e7au), pixel);
-    return corner + vec2(unit_float(scrambled_sobol(STEP.camera_sample, 0u, seed)),
-                         unit_float(scrambled_sobol(STEP.camera_sample, 1u, seed)));
-}
+#include "camera.glsl"
 
 vec3 background_vector(uint i)
 {
@@ -68,7 +58,7 @@ void main()
 {
     begin_with_step();
     const uint index = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
-    if (index >= STEP.miss_count)
+    if (index >= STEP.counts_of_lists.at[1])
         return;
     const uint pixel = STEP.misses.at[index];
     vec3 radiance = vec3(0.0);

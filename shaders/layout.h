@@ -59,6 +59,9 @@
 #define LAYOUT_STREAM_BIN 4
 
 /* What camera rays meet, see hits.h. */
+#define LAYOUT_MATERIAL_OBJECT 0 /* of all points; those of single points or triangles come behind */
+#define LAYOUT_MATERIAL_GROUND 1
+#define LAYOUT_SHARED_MATERIALS 2
 #define LAYOUT_HIT_OBJECT 1
 #define LAYOUT_HIT_PLANE 2
 
@@ -185,6 +188,9 @@ struct layout_step {
     ADDRESS(vectors, origins);  /* [point_count]: where shadow rays start, see rays.glsl; nothing without them */
     ADDRESS(vectors, nodes);    /* [...][4]: struct bvh_node */
     ADDRESS(vectors, triangles); /* [...][3] */
+    ADDRESS(vectors, normals);  /* [...][4]: of a triangle's plane and of its corners */
+    ADDRESS(uints, counts_of_lists); /* [2]: points and misses */
+    ADDRESS(uints, groups_of_lists); /* [3][3]: work groups for points, for points one by one, for misses */
     FLOAT map_axes[9];     /* see environment.h */
     FLOAT intensity;
     FLOAT background[9];   /* corner, across, down: see background.h */
@@ -194,7 +200,11 @@ struct layout_step {
     UINT samples;          /* of a point */
     FLOAT brdf_share;
     UINT no_beta;
-    UINT point_count, miss_count;
+    FLOAT camera[14]; /* eye, forward, right, up, tan_half_fov, aspect: see camera_frame in camera.h */
+    FLOAT ground_height, extent; /* of the scene, see scene.h */
+    FLOAT sphere[4];  /* around the mesh: centre, and the square of the distance from which it is too far away */
+    UINT casts_rays;  /* shadow rays */
+    UINT points_of_group; /* see shade.comp */
     UINT width, height;
     UINT camera_seed;      /* of the frame, for positions in the pixels ... */
     UINT camera_sample;    /* ... of this sample; UINT_MAX: the centre */
@@ -214,7 +224,7 @@ struct layout_push {
 _Static_assert(sizeof(struct layout_sums) == 176, "as in the shaders");
 _Static_assert(sizeof(struct layout_material) == 48 && sizeof(struct layout_point) == 48, "as in the shaders");
 _Static_assert(sizeof(struct layout_state) == 23 * 8 + 18 * 4, "as in the shaders");
-_Static_assert(sizeof(struct layout_step) == 9 * 8 + 36 * 4, "as in the shaders");
+_Static_assert(sizeof(struct layout_step) == 12 * 8 + 56 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_push) == 32, "as in the shaders");
 #endif
 #endif

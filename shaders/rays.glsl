@@ -42,23 +42,37 @@ vec3 sheared(shadow_ray ray, vec3 corner)
     return vec3(p[ray.x] - ray.shear.x * p[ray.z], p[ray.y] - ray.shear.y * p[ray.z], ray.shear.z * p[ray.z]);
 }
 
-bool meets_triangle(shadow_ray ray, uint triangle)
+// Where a ray meets a triangle: the weights of its corners, and how far away, in lengths of the direction.
+struct triangle_meeting {
+    vec3 weights;
+    float distance;
+};
+
+bool meets_triangle(shadow_ray ray, uint triangle, out triangle_meeting at)
 {
     const vec3 a = sheared(ray, STEP.triangles.at[3u * triangle].xyz);
     const vec3 b = sheared(ray, STEP.triangles.at[3u * triangle + 1u].xyz);
     const vec3 c = sheared(ray, STEP.triangles.at[3u * triangle + 2u].xyz);
     precise float u = c.x * b.y - c.y * b.x, v = a.x * c.y - a.y * c.x, w = b.x * a.y - b.y * a.x;
+    const float determinant = u + v + w, scale = 1.0 / determinant;
+    at = triangle_meeting(vec3(u, v, w) * scale, (u * a.z + v * b.z + w * c.z) * scale);
     if ((u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0))
         return false;
-    const float determinant = u + v + w, distance = u * a.z + v * b.z + w * c.z;
-    return determinant != 0.0 && (determinant > 0.0 ? distance > 0.0 : distance < 0.0);
+    return determinant != 0.0 && at.distance > 0.0;
+}
+
+// Software that plays a device reads memory for threads that have nothing to do there as well: no address may be wild.
+uint first_of_node(uint node)
+{
+    return (node & LEAF) != 0u ? 0u : 4u * node;
 }
 
 bool meets_leaf(shadow_ray ray, uint leaf)
 {
     const uint first = (leaf & ~LEAF) >> 3, count = (leaf & 7u) + 1u;
+    triangle_meeting at;
     for (uint i = 0u; i < count; i++)
-        if (meets_triangle(ray, first + i))
+        if (meets_triangle(ray, first + i, at))
             return true;
     return false;
 }
@@ -76,8 +90,9 @@ bool is_occluded(vec3 origin, vec3 direction)
             node = stack[--height];
             continue;
         }
-        const vec4 a = STEP.nodes.at[4u * node], b = STEP.nodes.at[4u * node + 1u];
-        const vec4 c = STEP.nodes.at[4u * node + 2u], d = STEP.nodes.at[4u * node + 3u];
+        const uint first = first_of_node(node);
+        const vec4 a = STEP.nodes.at[first], b = STEP.nodes.at[first + 1u];
+        const vec4 c = STEP.nodes.at[first + 2u], d = STEP.nodes.at[first + 3u];
         const bool left = meets_box(ray, a.xyz, b.xyz), right = meets_box(ray, c.xyz, d.xyz);
         const uint left_child = floatBitsToUint(a.w), right_child = floatBitsToUint(b.w);
         if (left && right)

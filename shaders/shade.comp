@@ -57,7 +57,8 @@ void main()
 {
     begin_with_step();
     const uint thread = gl_LocalInvocationID.x, first = group_index() * POINTS;
-    const bool has_point = thread < POINTS && first + thread < STEP.point_count;
+    const uint point_count = STEP.counts_of_lists.at[0];
+    const bool has_point = thread < POINTS && first + thread < point_count;
     shading_point given;
     prepared_point own;
     if (thread == 0u)
@@ -75,7 +76,7 @@ void main()
         if (has_point)
             finish(given, own, light_point(own, first + thread, 0u));
     } else {
-        const uint lane = thread % LANES, count = first < STEP.point_count ? min(POINTS, STEP.point_count - first) : 0u;
+        const uint lane = thread % LANES, count = first < point_count ? min(POINTS, point_count - first) : 0u;
         for (uint i = thread / LANES; i < count; i += gl_WorkGroupSize.x / LANES)
             parts[i * LANES + lane] = light_point(points[i], first + i, lane);
         barrier();

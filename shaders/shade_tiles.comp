@@ -211,7 +211,7 @@ vec4 sum_of_group(vec4 own)
 void main()
 {
     begin_with_step();
-    if (group_index() >= STEP.point_count)
+    if (group_index() >= STEP.counts_of_lists.at[0])
         return;
     const shading_point given = read_point(group_index());
     prepared_point p = prepare(given);

@@ -22,11 +22,13 @@ _Static_assert((int)TILE <= (int)BACKGROUND_PIXELS && (int)TILE <= (int)SCENE_RA
  */
 typedef void (*renderer_lighting)(void *user, size_t pixel, const helio_shading_point *point, estimate_result *result);
 
-/* What only references ask for. */
+/* What only references and tests ask for. */
 typedef struct renderer_extras {
     bool keeps_sums; /* film.lights holds the sums of the latest frame when it is done, but no picture is made */
     renderer_lighting lighting; /* default: estimates */
     void *user;                 /* handed to it */
+    bool
+        cpu_rays; /* trace camera rays on the CPU although a device computes: to compare the light of the same points */
 } renderer_extras;
 
 struct helio_renderer {

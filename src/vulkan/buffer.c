@@ -3,7 +3,7 @@
 
 #include "core/error.h"
 
-enum { LEAST_BYTES = 64 };
+enum { LEAST_BYTES = 64, SLACK_OF_SOFTWARE = 1 << 16 };
 
 typedef struct memory_wish {
     VkMemoryPropertyFlags needed, wanted;
@@ -79,11 +79,14 @@ helio_status buffer_create(helio_device *device, buffer_place place, uint64_t co
         return fail_memory(device, buffer.bytes, name);
     const uint32_t families[] = {device->queue_family, device->upload_family};
     const bool is_shared = place == BUFFER_SHARED && families[0] != families[1];
+    /* Software that plays a device reads for threads without work as well, a little beyond the end. */
+    const uint64_t slack = device_is_software(device) ? SLACK_OF_SOFTWARE : 0;
     const VkBufferCreateInfo create = {
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-        .size = buffer.bytes,
-        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
-                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+        .size = buffer.bytes + slack,
+        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
+                 VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                 VK_BUFFER_USAGE_TRANSFER_DST_BIT,
         .sharingMode = is_shared ? VK_SHARING_MODE_CONCURRENT : VK_SHARING_MODE_EXCLUSIVE,
         .queueFamilyIndexCount = is_shared ? 2 : 0,
         .pQueueFamilyIndices = families};

@@ -44,8 +44,7 @@ static float box_centre(const box *b, int axis)
 typedef struct builder {
     const helio_mesh *mesh;
     bvh *tree;
-    box *boxes;      /* [triangles] */
-    uint32_t *order; /* [triangles] */
+    box *boxes; /* [triangles] */
 } builder;
 
 /* A set of triangles, order[first] ... order[end - 1], whose node is to be written to a child of its parent. */
@@ -69,7 +68,7 @@ static box box_of_part(const builder *b, uint32_t first, uint32_t end)
 {
     box sum = EMPTY;
     for (uint32_t i = first; i < end; i++)
-        box_add(&sum, &b->boxes[b->order[i]]);
+        box_add(&sum, &b->boxes[b->tree->order[i]]);
     return sum;
 }
 
@@ -94,7 +93,7 @@ static bool choose_axis(const builder *b, const part *p, division *d)
     box centres = EMPTY;
     float longest = 0.0f;
     for (uint32_t i = p->first; i < p->end; i++) {
-        const box *own = &b->boxes[b->order[i]];
+        const box *own = &b->boxes[b->tree->order[i]];
         const box centre = {{box_centre(own, 0), box_centre(own, 1), box_centre(own, 2)},
                             {box_centre(own, 0), box_centre(own, 1), box_centre(own, 2)}};
         box_add(&centres, &centre);
@@ -142,12 +141,12 @@ static uint32_t partition(builder *b, const part *p, const division *d)
 {
     uint32_t low = p->first, high = p->end;
     while (low < high) {
-        if (bin_of(d, &b->boxes[b->order[low]]) < d->bin) {
+        if (bin_of(d, &b->boxes[b->tree->order[low]]) < d->bin) {
             low++;
         } else {
-            const uint32_t moved = b->order[low];
-            b->order[low] = b->order[--high];
-            b->order[high] = moved;
+            const uint32_t moved = b->tree->order[low];
+            b->tree->order[low] = b->tree->order[--high];
+            b->tree->order[high] = moved;
         }
     }
     return low;
@@ -163,7 +162,7 @@ static uint32_t divide(builder *b, const part *p)
     for (int i = 0; i < BINS; i++)
         all.boxes[i] = EMPTY;
     for (uint32_t i = p->first; i < p->end; i++) {
-        const box *own = &b->boxes[b->order[i]];
+        const box *own = &b->boxes[b->tree->order[i]];
         const uint32_t bin = bin_of(&d, own);
         box_add(&all.boxes[bin], own);
         all.counts[bin]++;
@@ -230,7 +229,7 @@ static void write_triangles(const builder *b)
     for (uint32_t i = 0; i < b->tree->triangle_count; i++)
         for (size_t corner = 0; corner < 3; corner++)
             memcpy(b->tree->triangles[i][corner],
-                   b->mesh->positions + 3 * (size_t)b->mesh->triangles[3 * (size_t)b->order[i] + corner],
+                   b->mesh->positions + 3 * (size_t)b->mesh->triangles[3 * (size_t)b->tree->order[i] + corner],
                    3 * sizeof(float));
 }
 
@@ -240,12 +239,12 @@ static helio_status build_all(builder *b)
     tree->nodes = context_allocate(tree->context, tree->triangle_count, sizeof *tree->nodes);
     tree->triangles = context_allocate(tree->context, tree->triangle_count, sizeof *tree->triangles);
     b->boxes = context_allocate(tree->context, tree->triangle_count, sizeof *b->boxes);
-    b->order = context_allocate(tree->context, tree->triangle_count, sizeof *b->order);
-    if (!tree->nodes || !tree->triangles || !b->boxes || !b->order)
+    b->tree->order = context_allocate(tree->context, tree->triangle_count, sizeof *b->tree->order);
+    if (!tree->nodes || !tree->triangles || !b->boxes || !b->tree->order)
         return HELIO_ERR_MEMORY;
     for (uint32_t i = 0; i < tree->triangle_count; i++) {
         b->boxes[i] = box_of_triangle(b->mesh, i);
-        b->order[i] = i;
+        b->tree->order[i] = i;
     }
     if (tree->triangle_count == 1)
         build_single(b);
@@ -266,7 +265,6 @@ helio_status bvh_create(helio_context *context, const helio_mesh *mesh, bvh *out
                     mesh->triangle_count, MOST_TRIANGLES);
     helio_status status = build_all(&b);
     context_release(context, b.boxes);
-    context_release(context, b.order);
     if (status != HELIO_OK)
         bvh_destroy(&tree);
     else
@@ -280,5 +278,6 @@ void bvh_destroy(bvh *tree)
         return;
     context_release(tree->context, tree->nodes);
     context_release(tree->context, tree->triangles);
+    context_release(tree->context, tree->order);
     *tree = (bvh){0};
 }

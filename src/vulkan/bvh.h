@@ -28,6 +28,7 @@ typedef struct bvh {
     uint32_t node_count, triangle_count;
     bvh_node *nodes;          /* [node_count]: at least 1, the first is the root */
     float (*triangles)[3][4]; /* [triangle_count]: corners, in the order of the leaves */
+    uint32_t *order;          /* [triangle_count]: which of the mesh's each is */
 } bvh;
 
 /* HELIO_ERR_UNSUPPORTED for a mesh of more triangles than a leaf can number, 2^28. */

@@ -140,11 +140,14 @@ helio_status commands_wait(vulkan_commands *commands)
 void commands_barrier(vulkan_commands *commands)
 {
     const VkPipelineStageFlags stages = stages_of(commands);
+    const VkPipelineStageFlags behind = stages | (commands->uploads ? 0 : VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT);
     const VkAccessFlags writes = VK_ACCESS_TRANSFER_WRITE_BIT | (commands->uploads ? 0 : VK_ACCESS_SHADER_WRITE_BIT);
-    const VkAccessFlags reads = VK_ACCESS_TRANSFER_READ_BIT | (commands->uploads ? 0 : VK_ACCESS_SHADER_READ_BIT);
+    const VkAccessFlags reads =
+        VK_ACCESS_TRANSFER_READ_BIT |
+        (commands->uploads ? 0 : VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
     const VkMemoryBarrier barrier = {
         .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER, .srcAccessMask = writes, .dstAccessMask = reads | writes};
-    commands->device->vk.CmdPipelineBarrier(commands->buffer, stages, stages, 0, 1, &barrier, 0, NULL, 0, NULL);
+    commands->device->vk.CmdPipelineBarrier(commands->buffer, stages, behind, 0, 1, &barrier, 0, NULL, 0, NULL);
 }
 
 void commands_barrier_all(vulkan_commands *commands)
@@ -183,6 +186,16 @@ void commands_dispatch(vulkan_commands *commands, VkPipeline pipeline, const str
     device->vk.CmdPushConstants(commands->buffer, device->pipeline_layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof *push,
                                 push);
     device->vk.CmdDispatch(commands->buffer, across, (uint32_t)((groups + across - 1) / across), 1);
+}
+
+void commands_dispatch_indirect(vulkan_commands *commands, VkPipeline pipeline, const struct layout_push *push,
+                                const vulkan_buffer *groups, uint64_t offset)
+{
+    const helio_device *device = commands->device;
+    device->vk.CmdBindPipeline(commands->buffer, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    device->vk.CmdPushConstants(commands->buffer, device->pipeline_layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof *push,
+                                push);
+    device->vk.CmdDispatchIndirect(commands->buffer, groups->buffer, offset);
 }
 
 uint32_t commands_mark(vulkan_commands *commands)

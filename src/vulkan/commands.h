@@ -47,6 +47,10 @@ void commands_clear(vulkan_commands *commands, const vulkan_buffer *buffer);
 /* Work groups, of which there may be more than asked for: shaders know their number, see group_index(). */
 void commands_dispatch(vulkan_commands *commands, VkPipeline pipeline, const struct layout_push *push, uint64_t groups);
 
+/* The same for as many groups as a buffer holds at this offset, in three dimensions. */
+void commands_dispatch_indirect(vulkan_commands *commands, VkPipeline pipeline, const struct layout_push *push,
+                                const vulkan_buffer *groups, uint64_t offset);
+
 /* Writes down the time when all before is done; a mark's number comes back. What the host reads of it is the ms between
  * two marks, once the list was waited for; 0 where the device cannot tell the time. */
 uint32_t commands_mark(vulkan_commands *commands);

@@ -72,6 +72,7 @@
     X(CmdPipelineBarrier)                                                                                              \
     X(CmdBindPipeline)                                                                                                 \
     X(CmdPushConstants)                                                                                                \
+    X(CmdDispatchIndirect)                                                                                             \
     X(CmdDispatch)                                                                                                     \
     X(CmdCopyBuffer)                                                                                                   \
     X(CmdUpdateBuffer)                                                                                                 \

@@ -5,9 +5,6 @@
 
 #include <string.h>
 
-/* Materials of all points come first, then those of single points of the object. */
-enum { MATERIAL_OBJECT, MATERIAL_GROUND, SHARED_MATERIALS };
-
 static helio_status create_pair(helio_device *device, uint64_t count, uint64_t size, const char *name,
                                 vulkan_buffer *on_device, vulkan_buffer *staging)
 {
@@ -15,10 +12,18 @@ static helio_status create_pair(helio_device *device, uint64_t count, uint64_t s
     return buffer_create(device, BUFFER_UPLOAD, count, size, name, staging);
 }
 
-static helio_status create_buffers(vulkan_points *points, uint64_t pixels)
+static uint64_t greater(uint64_t a, uint64_t b)
+{
+    return a > b ? a : b;
+}
+
+static helio_status create_buffers(vulkan_points *points, const helio_scene *scene, uint64_t pixels)
 {
     helio_device *device = points->device;
-    const uint64_t materials = SHARED_MATERIALS + (points->has_own_materials ? pixels : 0);
+    const uint64_t own = points->has_own_materials ? greater(pixels, scene->mesh->material_count) : 0;
+    const uint64_t materials = LAYOUT_SHARED_MATERIALS + own;
+    HELIO_TRY(buffer_create(device, BUFFER_ON_DEVICE, 2, sizeof(uint32_t), "the lengths of lists", &points->counts));
+    HELIO_TRY(buffer_create(device, BUFFER_ON_DEVICE, 9, sizeof(uint32_t), "the work groups", &points->groups));
     HELIO_TRY(create_pair(device, pixels, sizeof(struct layout_point), "the points", &points->points,
                           &points->points_staging));
     HELIO_TRY(create_pair(device, materials, sizeof(struct layout_material), "the materials", &points->materials,
@@ -32,7 +37,7 @@ helio_status points_create(helio_device *device, const helio_scene *scene, bool 
                            uint32_t height, vulkan_points *points)
 {
     *points = (vulkan_points){.device = device, .has_own_materials = scene->own_materials, .casts_rays = casts_rays};
-    helio_status status = create_buffers(points, (uint64_t)width * height);
+    helio_status status = create_buffers(points, scene, (uint64_t)width * height);
     if (status != HELIO_OK)
         points_destroy(points);
     return status;
@@ -40,9 +45,17 @@ helio_status points_create(helio_device *device, const helio_scene *scene, bool 
 
 void points_destroy(vulkan_points *points)
 {
-    vulkan_buffer *const all[] = {&points->points,         &points->materials,         &points->misses,
-                                  &points->points_staging, &points->materials_staging, &points->misses_staging,
-                                  &points->origins,        &points->origins_staging,   NULL};
+    vulkan_buffer *const all[] = {&points->points,
+                                  &points->materials,
+                                  &points->misses,
+                                  &points->points_staging,
+                                  &points->materials_staging,
+                                  &points->misses_staging,
+                                  &points->origins,
+                                  &points->origins_staging,
+                                  &points->counts,
+                                  &points->groups,
+                                  NULL};
     if (points->device == NULL)
         return;
     buffers_destroy(points->device, all);
@@ -81,9 +94,9 @@ static void stage_point(vulkan_points *points, const struct frame *frame, size_t
     vec3_to(surface->normal, point.normal);
     vec3_to(surface->geometric_normal, point.geometric_normal);
     vec3_to(scale(direction, -1.0f), point.view);
-    point.material = hits->kinds[pixel] == HIT_OBJECT ? MATERIAL_OBJECT : MATERIAL_GROUND;
+    point.material = hits->kinds[pixel] == HIT_OBJECT ? LAYOUT_MATERIAL_OBJECT : LAYOUT_MATERIAL_GROUND;
     if (hits->materials != NULL && hits->kinds[pixel] == HIT_OBJECT) {
-        point.material = SHARED_MATERIALS + points->point_count;
+        point.material = LAYOUT_SHARED_MATERIALS + points->point_count;
         materials[point.material] = describe_material(&hits->materials[pixel]);
     }
     *to = point;
@@ -113,8 +126,8 @@ void points_stage(vulkan_points *points, const struct frame *frame)
     const helio_scene *scene = frame->renderer->desc.scene;
     struct layout_material *materials = points->materials_staging.mapped;
     points->point_count = points->miss_count = 0;
-    materials[MATERIAL_OBJECT] = describe_material(&scene->material);
-    materials[MATERIAL_GROUND] = describe_material(&scene->ground_material);
+    materials[LAYOUT_MATERIAL_OBJECT] = describe_material(&scene->material);
+    materials[LAYOUT_MATERIAL_GROUND] = describe_material(&scene->ground_material);
     for (size_t index = 0; index < frame->tile_count; index++) {
         const struct tile tile = frame_tile(frame, index);
         for (uint32_t y = tile.y0; y < tile.y1; y++)
@@ -122,16 +135,32 @@ void points_stage(vulkan_points *points, const struct frame *frame)
     }
 }
 
+helio_status points_upload_materials(vulkan_points *points, vulkan_commands *commands, const helio_scene *scene)
+{
+    struct layout_material *materials = points->materials_staging.mapped;
+    const uint32_t own = points->has_own_materials ? scene->mesh->material_count : 0;
+    materials[LAYOUT_MATERIAL_OBJECT] = describe_material(&scene->material);
+    materials[LAYOUT_MATERIAL_GROUND] = describe_material(&scene->ground_material);
+    for (uint32_t i = 0; i < own; i++)
+        materials[LAYOUT_SHARED_MATERIALS + i] = describe_material(&scene->mesh->materials[i]);
+    HELIO_TRY(commands_begin(commands));
+    commands_copy(commands, &points->materials_staging, &points->materials,
+                  (LAYOUT_SHARED_MATERIALS + own) * sizeof *materials);
+    HELIO_TRY(commands_submit(commands));
+    return commands_wait(commands);
+}
+
 void points_record_upload(const vulkan_points *points, vulkan_commands *commands)
 {
-    const uint64_t materials = SHARED_MATERIALS + (points->has_own_materials ? points->point_count : 0);
+    const uint32_t counts[2] = {points->point_count, points->miss_count};
+    const uint64_t materials = LAYOUT_SHARED_MATERIALS + (points->has_own_materials ? points->point_count : 0);
     commands_copy(commands, &points->points_staging, &points->points,
                   points->point_count * sizeof(struct layout_point));
     commands_copy(commands, &points->materials_staging, &points->materials, materials * sizeof(struct layout_material));
     if (points->casts_rays)
         commands_copy(commands, &points->origins_staging, &points->origins, points->point_count * 4 * sizeof(float));
     commands_copy(commands, &points->misses_staging, &points->misses, points->miss_count * sizeof(uint32_t));
-    commands_barrier(commands);
+    commands_write(commands, &points->counts, counts, sizeof counts);
 }
 
 uint32_t points_kinds(const helio_scene *scene)

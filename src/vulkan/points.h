@@ -10,7 +10,8 @@ typedef struct vulkan_points {
     helio_device *device;
     uint32_t point_count, miss_count;
     bool has_own_materials, casts_rays;
-    vulkan_buffer points, materials, misses, origins;                                 /* on the device */
+    vulkan_buffer points, materials, misses, origins; /* on the device, as are: */
+    vulkan_buffer counts, groups;                     /* see counts_of_lists and groups_of_lists in layout.h */
     vulkan_buffer points_staging, materials_staging, misses_staging, origins_staging; /* where the host writes them */
 } vulkan_points;
 
@@ -22,7 +23,10 @@ void points_destroy(vulkan_points *points);
 /* Makes lists of the hits of a frame; not while a list of commands that copies them is on its way. */
 void points_stage(vulkan_points *points, const struct frame *frame);
 
-/* Records the copy, with a barrier behind. */
+/* The materials of all points and of the triangles, at once, for a device that traces camera rays itself. */
+helio_status points_upload_materials(vulkan_points *points, vulkan_commands *commands, const helio_scene *scene);
+
+/* Records the copy, without a barrier behind. */
 void points_record_upload(const vulkan_points *points, vulkan_commands *commands);
 
 /* Kinds of materials that points of the scene may have, as bits. */

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "env/environment.h"
+#include "scene/mesh.h"
 #include "vulkan/bvh.h"
 #include "vulkan/light.h"
 #include "vulkan/points.h"
@@ -14,8 +15,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BACKGROUND_THREADS = 64, TILE_THREADS = 32, TILE_THREADS_OF_SOFTWARE = 8 };
+enum {
+    PRIMARY_EDGE = 8,
+    PRIMARY_THREADS = 64,
+    BACKGROUND_THREADS = 64,
+    TILE_THREADS = 32,
+    TILE_THREADS_OF_SOFTWARE = 8
+};
 static const float DEFAULT_BRDF_SHARE = 0.5f;
+static const double FAR = 1e7; /* radii, as in scene.c */
 
 /* How work is shared out when points are lit, see shade.comp. */
 typedef struct shade_shape {
@@ -24,14 +32,15 @@ typedef struct shade_shape {
 
 /* Marks of a list of commands. */
 typedef struct step_marks {
-    uint32_t start, uploaded, tables, pools, shaded, back;
+    uint32_t start, uploaded, traced, tables, pools, shaded, back;
 } step_marks;
 
 /* A frame that may still be on its way while the next is begun. */
 typedef struct frame_slot {
     vulkan_commands commands;
     step_marks marks;
-    vulkan_buffer counts_back;
+    vulkan_buffer counts_back, lists_back;
+    bool counts_points;    /* those of this step are new */
     helio_frame_info info; /* as far as it is known */
     bool is_pending;
 } frame_slot;
@@ -44,13 +53,15 @@ struct vulkan_renderer {
     helio_frame_info latest_info; /* of the latest frame that is known to be over */
     vulkan_light light;
     vulkan_points points;
-    bool has_points; /* on the device: those of the renderer's hits */
+    bool traces;      /* camera rays too; else the CPU does */
+    struct hits seen; /* what the lists of points belong to, without arrays */
+    bool has_points;  /* the lists are those of the step in hand */
     shade_shape shape;
-    VkPipeline shade, background;
+    VkPipeline primary, list_groups, shade, background;
     VkPipeline shade_tiles;                      /* where points that shine weigh tiles; else nothing */
     vulkan_buffer step, counts, picture, object; /* on the device */
     vulkan_buffer picture_back, object_back;
-    vulkan_buffer nodes, triangles; /* for shadow rays; else nothing */
+    vulkan_buffer nodes, triangles, normals; /* for rays; else nothing */
 };
 
 /* ---- creation ----------------------------------------------------------------------------- */
@@ -96,14 +107,51 @@ static helio_status upload_tree(struct vulkan_renderer *v, const bvh *tree)
     return commands_upload(&v->slots[0].commands, &v->triangles, tree->triangles, triangles);
 }
 
+/* Of the plane of each triangle, with the number of its material, and of its corners. */
+static void fill_normals(const helio_scene *scene, const bvh *tree, float (*normals)[4][4])
+{
+    const helio_mesh *mesh = scene->mesh;
+    for (uint32_t i = 0; i < tree->triangle_count; i++) {
+        const uint32_t triangle = tree->order[i];
+        const uint32_t material = scene->own_materials ? LAYOUT_SHARED_MATERIALS + mesh->triangle_materials[triangle]
+                                                       : LAYOUT_MATERIAL_OBJECT;
+        vec3 plane = {0, 0, 0}; /* of a triangle without area, which no ray meets */
+        mesh_triangle_normal(mesh, triangle, &plane);
+        vec3_to(plane, normals[i][0]);
+        memcpy(&normals[i][0][3], &material, sizeof material);
+        for (size_t corner = 0; corner < 3; corner++)
+            memcpy(normals[i][1 + corner], mesh->normals + 3 * (size_t)mesh->triangles[3 * (size_t)triangle + corner],
+                   3 * sizeof(float));
+    }
+}
+
+static helio_status upload_normals(struct vulkan_renderer *v, const helio_renderer *renderer, const bvh *tree)
+{
+    const uint64_t bytes = tree->triangle_count * sizeof(float[4][4]);
+    float(*normals)[4][4] = context_allocate(renderer->context, tree->triangle_count, sizeof *normals);
+    if (normals == NULL)
+        return HELIO_ERR_MEMORY;
+    fill_normals(renderer->desc.scene, tree, normals);
+    helio_status status = buffer_create(v->device, BUFFER_ON_DEVICE, bytes, 1, "the normals", &v->normals);
+    if (status == HELIO_OK)
+        status = commands_upload(&v->slots[0].commands, &v->normals, normals, bytes);
+    context_release(renderer->context, normals);
+    return status;
+}
+
+/* What rays need of the mesh. */
 static helio_status create_tree(struct vulkan_renderer *v, const helio_renderer *renderer)
 {
     bvh tree;
-    if (!casts_rays(renderer))
+    if (!casts_rays(renderer) && !v->traces)
         return HELIO_OK;
     HELIO_TRY(bvh_create(renderer->context, renderer->desc.scene->mesh, &tree));
     helio_status status = upload_tree(v, &tree);
+    if (status == HELIO_OK && v->traces)
+        status = upload_normals(v, renderer, &tree);
     bvh_destroy(&tree);
+    if (status == HELIO_OK && v->traces)
+        status = points_upload_materials(&v->points, &v->slots[0].commands, renderer->desc.scene);
     return status;
 }
 
@@ -127,6 +175,10 @@ static helio_status create_passes(struct vulkan_renderer *v, const helio_rendere
                                  {v->shape.threads, v->shape.points, v->shape.lanes, points_kinds(renderer->desc.scene),
                                   state->light, state->surface, casts_rays(renderer)}};
     const pipeline_desc background = {"background", 1, {BACKGROUND_THREADS}};
+    const pipeline_desc primary = {"primary", 1, {PRIMARY_THREADS}}, list_groups = {"list_groups", 1, {1}};
+    if (v->traces)
+        HELIO_TRY(pipeline_create(v->device, &primary, &v->primary));
+    HELIO_TRY(pipeline_create(v->device, &list_groups, &v->list_groups));
     HELIO_TRY(pipeline_create(v->device, &shade, &v->shade));
     HELIO_TRY(pipeline_create(v->device, &background, &v->background));
     return create_shade_tiles(v, renderer);
@@ -151,6 +203,7 @@ static helio_status create_parts(struct vulkan_renderer *v, const helio_renderer
         HELIO_TRY(commands_create(v->device, false, &slot->commands));
         HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, 1, sizeof(struct layout_counts), "the counts",
                                 &slot->counts_back));
+        HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, 2, sizeof(uint32_t), "the counts", &slot->lists_back));
     }
     HELIO_TRY(light_create(v->device, &v->slots[0].commands, renderer->pools, &v->light));
     HELIO_TRY(points_create(v->device, desc->scene, casts_rays(renderer), desc->width, desc->height, &v->points));
@@ -171,6 +224,12 @@ static helio_status check(const helio_renderer *renderer)
     return HELIO_OK;
 }
 
+/* Textures are the CPU's. */
+static bool can_trace(const helio_scene *scene)
+{
+    return !scene->own_materials || scene->mesh->texture_count == 0;
+}
+
 helio_status vulkan_renderer_create(helio_renderer *renderer)
 {
     HELIO_TRY(check(renderer));
@@ -179,6 +238,7 @@ helio_status vulkan_renderer_create(helio_renderer *renderer)
         return HELIO_ERR_MEMORY;
     v->context = renderer->context;
     v->device = renderer->desc.device;
+    v->traces = can_trace(renderer->desc.scene) && !renderer->extras.cpu_rays;
     helio_status status = create_parts(v, renderer);
     if (status != HELIO_OK) {
         vulkan_renderer_destroy(v);
@@ -192,15 +252,18 @@ void vulkan_renderer_destroy(struct vulkan_renderer *v)
 {
     if (v == NULL)
         return;
-    vulkan_buffer *const all[] = {&v->step,        &v->counts, &v->picture,   &v->object, &v->picture_back,
-                                  &v->object_back, &v->nodes,  &v->triangles, NULL};
+    vulkan_buffer *const all[] = {&v->step,        &v->counts, &v->picture,   &v->object,  &v->picture_back,
+                                  &v->object_back, &v->nodes,  &v->triangles, &v->normals, NULL};
     for (int i = 0; i < LIGHT_SLOTS; i++) {
         commands_destroy(&v->slots[i].commands);
         buffer_destroy(v->device, &v->slots[i].counts_back);
+        buffer_destroy(v->device, &v->slots[i].lists_back);
     }
     buffers_destroy(v->device, all);
     pipeline_destroy(v->device, &v->shade);
     pipeline_destroy(v->device, &v->background);
+    pipeline_destroy(v->device, &v->primary);
+    pipeline_destroy(v->device, &v->list_groups);
     pipeline_destroy(v->device, &v->shade_tiles);
     points_destroy(&v->points);
     light_destroy(&v->light);
@@ -209,9 +272,9 @@ void vulkan_renderer_destroy(struct vulkan_renderer *v)
 
 /* ---- the numbers of a step ---------------------------------------------------------------- */
 
-static void put_vectors(const vec3 *vectors, float *to)
+static void put_vectors(const vec3 *vectors, int count, float *to)
 {
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < count; i++)
         vec3_to(vectors[i], to + (size_t)i * 3);
 }
 
@@ -237,8 +300,16 @@ static struct layout_step describe_step(const struct vulkan_renderer *v, const s
         .samples = frame->step.samples,
         .brdf_share = desc->brdf_share != 0.0f ? desc->brdf_share : DEFAULT_BRDF_SHARE,
         .no_beta = desc->no_beta,
-        .point_count = v->points.point_count,
-        .miss_count = v->points.miss_count,
+        .normals = v->normals.address,
+        .counts_of_lists = v->points.counts.address,
+        .groups_of_lists = v->points.groups.address,
+        .camera = {[12] = frame->camera.tan_half_fov, [13] = frame->camera.aspect},
+        .ground_height = desc->scene->ground_height,
+        .extent = desc->scene->extent,
+        .sphere = {(float)desc->scene->centre[0], (float)desc->scene->centre[1], (float)desc->scene->centre[2],
+                   (float)(FAR * FAR * desc->scene->radius_squared)},
+        .casts_rays = casts_rays(frame->renderer),
+        .points_of_group = v->shape.points,
         .width = desc->width,
         .height = desc->height,
         .camera_seed = frame->seed,
@@ -248,8 +319,10 @@ static struct layout_step describe_step(const struct vulkan_renderer *v, const s
         .shows_background = frame->renderer->film.shows_background,
         .weight = (float)frame->weight,
     };
-    put_vectors(desc->environment->map_axes, step.map_axes);
-    put_vectors(background, step.background);
+    const vec3 camera[4] = {frame->camera.eye, frame->camera.forward, frame->camera.right, frame->camera.up};
+    put_vectors(desc->environment->map_axes, 3, step.map_axes);
+    put_vectors(background, 3, step.background);
+    put_vectors(camera, 4, step.camera);
     return step;
 }
 
@@ -267,7 +340,8 @@ static void add_times(const vulkan_light *light, const frame_slot *slot, uint32_
     if (info->upload_ms == 0.0)
         info->upload_ms = light_send_milliseconds(light, index);
     info->upload_ms += commands_milliseconds(commands, marks->start, marks->uploaded);
-    info->tables_ms += commands_milliseconds(commands, marks->uploaded, marks->tables);
+    info->primary_ms += commands_milliseconds(commands, marks->uploaded, marks->traced);
+    info->tables_ms += commands_milliseconds(commands, marks->traced, marks->tables);
     info->pools_ms += commands_milliseconds(commands, marks->tables, marks->pools);
     info->shade_ms += commands_milliseconds(commands, marks->pools, marks->shaded);
     info->read_back_ms += commands_milliseconds(commands, marks->shaded, marks->back);
@@ -284,6 +358,8 @@ static helio_status finish_slot(struct vulkan_renderer *v, uint32_t index)
     HELIO_TRY(commands_wait(&v->light.slots[index].upload));
     const struct layout_counts *counts = slot->counts_back.mapped;
     add_times(&v->light, slot, index, &slot->info);
+    if (slot->counts_points)
+        slot->info.points += *(const uint32_t *)slot->lists_back.mapped;
     slot->info.samples = whole_count(counts->samples);
     slot->info.samples_useful = whole_count(counts->useful);
     slot->info.rays = v->points.casts_rays ? slot->info.samples_useful : 0;
@@ -306,40 +382,63 @@ static void trace_tile(void *data, size_t index)
     primary_tile(frame, frame_tile(frame, index));
 }
 
-/* Traces what is not known and makes lists of it. */
+/* What the CPU does for the lists of points of a step, where it traces the camera rays. */
+static helio_status trace_on_cpu(helio_renderer *renderer, struct frame *frame)
+{
+    renderer->hits.complete = false;
+    context_parallel_for(renderer->context, frame->tile_count, trace_tile, frame);
+    renderer->hits.camera = frame->camera;
+    renderer->hits.complete = renderer->desc.aa == 1;
+    HELIO_TRY(finish_all(renderer->vulkan)); /* nobody copies the lists before */
+    points_stage(&renderer->vulkan->points, frame);
+    return HELIO_OK;
+}
+
+/* Are the lists of points those of this step, or are they yet to be made? */
 static helio_status find_points(helio_renderer *renderer, struct frame *frame, bool keeps_hits, helio_frame_info *info)
 {
     struct vulkan_renderer *v = renderer->vulkan;
-    const bool traces = frame->step.part == 0 && !keeps_hits;
     const double start = frame_milliseconds();
-    if (traces) {
-        renderer->hits.complete = false;
-        context_parallel_for(renderer->context, frame->tile_count, trace_tile, frame);
-        info->camera_rays += (uint64_t)renderer->desc.width * renderer->desc.height;
-        renderer->hits.camera = frame->camera;
-        renderer->hits.complete = renderer->desc.aa == 1;
-    }
-    v->has_points = v->has_points && !traces;
-    if (!v->has_points) {
-        HELIO_TRY(finish_all(v)); /* nobody copies the lists before */
-        points_stage(&v->points, frame);
-    }
-    info->points += frame->step.part == 0 ? v->points.point_count : 0;
-    info->primary_ms += frame_milliseconds() - start;
+    v->has_points = keeps_hits || frame->step.part > 0;
+    if (v->has_points)
+        return HELIO_OK;
+    v->seen.complete = false;
+    if (!v->traces)
+        HELIO_TRY(trace_on_cpu(renderer, frame));
+    v->seen.camera = frame->camera;
+    v->seen.complete = renderer->desc.aa == 1;
+    info->camera_rays += (uint64_t)renderer->desc.width * renderer->desc.height;
+    info->primary_ms += v->traces ? 0.0 : frame_milliseconds() - start;
     return HELIO_OK;
 }
 
 /* ---- a step ------------------------------------------------------------------------------- */
 
+/* The lists of points and misses: found by the device, or by the CPU and on their way. */
+static void record_lists(struct vulkan_renderer *v, const helio_renderer_desc *desc, vulkan_commands *commands)
+{
+    const struct layout_push push = light_push(&v->light, v->step.address, BACKGROUND_THREADS);
+    const uint64_t across = (desc->width + PRIMARY_EDGE - 1) / PRIMARY_EDGE;
+    const uint64_t down = (desc->height + PRIMARY_EDGE - 1) / PRIMARY_EDGE;
+    commands_label(commands, "camera rays");
+    if (v->traces)
+        commands_dispatch(commands, v->primary, &push, across * down);
+    commands_barrier(commands);
+    commands_dispatch(commands, v->list_groups, &push, 1);
+    commands_barrier(commands);
+    commands_label_end(commands);
+}
+
 static void record_shading(struct vulkan_renderer *v, vulkan_commands *commands)
 {
     const struct layout_push push = light_push(&v->light, v->step.address, 0);
-    const uint64_t points = v->points.point_count, misses = v->points.miss_count;
+    const vulkan_buffer *groups = &v->points.groups;
+    const uint64_t row = 3 * sizeof(uint32_t); /* of groups_of_lists */
     commands_label(commands, "shading");
-    commands_dispatch(commands, v->shade, &push, (points + v->shape.points - 1) / v->shape.points);
+    commands_dispatch_indirect(commands, v->shade, &push, groups, 0);
     if (v->shade_tiles != VK_NULL_HANDLE)
-        commands_dispatch(commands, v->shade_tiles, &push, points);
-    commands_dispatch(commands, v->background, &push, (misses + BACKGROUND_THREADS - 1) / BACKGROUND_THREADS);
+        commands_dispatch_indirect(commands, v->shade_tiles, &push, groups, row);
+    commands_dispatch_indirect(commands, v->background, &push, groups, 2 * row);
     commands_barrier(commands);
     commands_label_end(commands);
 }
@@ -348,6 +447,7 @@ static void record_read_back(const struct vulkan_renderer *v, frame_slot *slot, 
 {
     vulkan_commands *commands = &slot->commands;
     commands_copy(commands, &v->counts, &slot->counts_back, sizeof(struct layout_counts));
+    commands_copy(commands, &v->points.counts, &slot->lists_back, 2 * sizeof(uint32_t));
     if (!wants_picture)
         return;
     commands_copy(commands, &v->picture, &v->picture_back, v->picture.bytes);
@@ -365,10 +465,15 @@ static void record_step(struct vulkan_renderer *v, frame_slot *slot, const struc
     commands_write(commands, &v->step, &step, sizeof step);
     if (frame->step.is_first)
         commands_clear(commands, &v->counts);
-    if (!v->has_points)
+    if (!v->has_points && v->traces)
+        commands_clear(commands, &v->points.counts);
+    else if (!v->has_points)
         points_record_upload(&v->points, commands);
     commands_barrier(commands);
     marks->uploaded = commands_mark(commands);
+    if (!v->has_points)
+        record_lists(v, &frame->renderer->desc, commands);
+    marks->traced = commands_mark(commands);
     if (frame->step.is_first)
         light_record_tables(&v->light, commands);
     marks->tables = commands_mark(commands);
@@ -390,8 +495,8 @@ static helio_status run_step(struct vulkan_renderer *v, frame_slot *slot, const 
     HELIO_TRY(commands_submit_between(&slot->commands, frame->step.is_first ? light_sent(&v->light) : VK_NULL_HANDLE,
                                       VK_NULL_HANDLE));
     slot->is_pending = true;
+    slot->counts_points = frame->step.part == 0;
     slot->info.passes += is_new_pass;
-    v->has_points = true;
     return HELIO_OK;
 }
 
@@ -430,7 +535,7 @@ static helio_status run_steps(helio_renderer *renderer, uint32_t index, struct f
     struct vulkan_renderer *v = renderer->vulkan;
     helio_frame_info *info = &v->slots[index].info;
     const uint32_t steps = frame_step_count(renderer);
-    const bool keeps_hits = !desc->retrace && hits_belong_to(&renderer->hits, &frame->camera);
+    const bool keeps_hits = !desc->retrace && hits_belong_to(&v->seen, &frame->camera);
     for (uint32_t step = 0; step < steps && !info->stopped; step++) {
         frame->step = frame_plan_step(renderer, step);
         frame->weight += frame->step.samples;

@@ -1,0 +1,169 @@
+#version 460
+// SPDX-License-Identifier: MIT
+//
+// Camera rays: a work group for a square of 8 x 8 pixels, whose points and misses it adds to the lists. As
+// scene_intersect_many() in src/scene/scene.c.
+#include "common.glsl"
+
+const uint VISIBILITY = 1u, EDGE = 8u;
+
+#include "random.glsl"
+#include "camera.glsl"
+#include "rays.glsl"
+
+shared uint own_counts[2], own_starts[2]; // of points and misses
+
+struct surface_hit {
+    uint kind, material; // kind: 0 for nothing
+    vec3 position, normal, geometric_normal;
+};
+
+// ---- the mesh ----
+
+struct nearest_hit {
+    uint triangle;
+    vec3 weights;
+    float distance;
+};
+
+// Where a ray enters a box, or beyond all where it misses it or comes too late.
+float enters_box(shadow_ray ray, vec3 least, vec3 greatest, float latest)
+{
+    const vec3 a = (least - ray.origin) * ray.inverse, b = (greatest - ray.origin) * ray.inverse;
+    const vec3 near = min(a, b), far = max(a, b);
+    const float enter = max(max(near.x, near.y), max(near.z, 0.0)), leave = min(min(far.x, far.y), far.z) * 1.0000004;
+    return leave >= 0.0 && enter <= leave && enter <= latest ? enter : 3e38;
+}
+
+void look_at_leaf(shadow_ray ray, uint leaf, inout nearest_hit hit)
+{
+    const uint first = (leaf & ~LEAF) >> 3, count = (leaf & 7u) + 1u;
+    triangle_meeting at;
+    for (uint i = 0u; i < count; i++) {
+        const bool is_met = meets_triangle(ray, first + i, at), is_nearer = is_met && at.distance < hit.distance;
+        hit.triangle = is_nearer ? first + i : hit.triangle;
+        hit.weights = is_nearer ? at.weights : hit.weights;
+        hit.distance = is_nearer ? at.distance : hit.distance;
+    }
+}
+
+nearest_hit find_nearest(vec3 origin, vec3 direction)
+{
+    const shadow_ray ray = begin_ray(origin, direction);
+    nearest_hit hit = nearest_hit(0u, vec3(0.0), 1e38);
+    uint stack[STACK], height = 0u, node = 0u;
+    for (;;) {
+        if ((node & LEAF) != 0u) {
+            look_at_leaf(ray, node, hit);
+        } else {
+            const uint first = first_of_node(node);
+            const vec4 a = STEP.nodes.at[first], b = STEP.nodes.at[first + 1u];
+            const vec4 c = STEP.nodes.at[first + 2u], d = STEP.nodes.at[first + 3u];
+            const float left = enters_box(ray, a.xyz, b.xyz, hit.distance);
+            const float right = enters_box(ray, c.xyz, d.xyz, hit.distance);
+            const uint left_child = floatBitsToUint(a.w), right_child = floatBitsToUint(b.w);
+            const bool left_first = left <= right;
+            if (max(left, right) < 2e38)
+                stack[height++] = left_first ? right_child : left_child;
+            if (min(left, right) < 2e38) {
+                node = left_first ? left_child : right_child;
+                continue;
+            }
+        }
+        if (height == 0u)
+            return hit;
+        height -= min(height, 1u); // 1, but for threads that are done: see first_of_node()
+        node = stack[height];
+    }
+}
+
+surface_hit resolve(nearest_hit hit, vec3 direction)
+{
+    const vec3 weights = hit.weights;
+    const vec4 plane = STEP.normals.at[4u * hit.triangle]; // whole: Mesa 22.3 takes .w alone for .x
+    vec3 position = vec3(0.0), smooth_normal = vec3(0.0), face = plane.xyz;
+    for (uint i = 0u; i < 3u; i++) {
+        position += weights[i] * STEP.triangles.at[3u * hit.triangle + i].xyz;
+        smooth_normal += weights[i] * STEP.normals.at[4u * hit.triangle + 1u + i].xyz;
+    }
+    face = dot(face, direction) > 0.0 ? -face : face;
+    const float size = length(smooth_normal);
+    smooth_normal = size > 1e-6 ? smooth_normal / size : face;
+    smooth_normal = dot(smooth_normal, face) < 0.0 ? -smooth_normal : smooth_normal;
+    return surface_hit(LAYOUT_HIT_OBJECT, floatBitsToUint(plane.w), position,
+                       smooth_normal, face);
+}
+
+// ---- all of the scene ----
+
+surface_hit meet_ground(vec3 origin, vec3 direction)
+{
+    const float distance = (STEP.ground_height - origin.y) / direction.y;
+    vec3 position = origin + direction * distance;
+    position.y = STEP.ground_height;
+    const vec3 normal = vec3(0.0, direction.y < 0.0 ? 1.0 : -1.0, 0.0);
+    const bool is_met = distance >= 0.0 && distance < 1e15;
+    return surface_hit(is_met ? LAYOUT_HIT_PLANE : 0u, LAYOUT_MATERIAL_GROUND, position, normal, normal);
+}
+
+// The whole mesh stands on the plane: from below the plane comes first, and from above the mesh does.
+surface_hit meet(vec3 origin, vec3 direction)
+{
+    const bool has_ground = STEP.has_ground != 0u, below = has_ground && origin.y < STEP.ground_height;
+    if (!below) {
+        const nearest_hit hit = find_nearest(origin, direction);
+        if (hit.distance < 1e38)
+            return resolve(hit, direction);
+    }
+    if (has_ground && (below ? direction.y > 0.0 : direction.y < 0.0))
+        return meet_ground(origin, direction);
+    return surface_hit(0u, 0u, vec3(0.0), vec3(0.0), vec3(0.0));
+}
+
+// Where shadow rays start: see offset_origin() and view_sphere() in scene.c.
+vec4 shadow_origin(surface_hit hit)
+{
+    const vec3 n = hit.geometric_normal, sizes = abs(n) * (abs(hit.position) + STEP.extent);
+    const float rounding = 16.0 * 0.5 * 1.19209290e-7;
+    const vec3 to_centre = vec3(STEP.sphere[0], STEP.sphere[1], STEP.sphere[2]) - hit.position;
+    const bool underside = STEP.has_ground != 0u && n.y == -1.0 && hit.position.y == STEP.ground_height;
+    const uint known = (underside ? 1u : 0u) | (dot(to_centre, to_centre) > STEP.sphere[3] ? 2u : 0u);
+    return vec4(hit.position + n * (rounding * (sizes.x + sizes.y + sizes.z)), uintBitsToFloat(known));
+}
+
+void store_point(uint index, uint pixel, surface_hit hit, vec3 direction)
+{
+    STEP.points.at[3u * index] = vec4(hit.normal, uintBitsToFloat(pixel));
+    STEP.points.at[3u * index + 1u] = vec4(hit.geometric_normal, uintBitsToFloat(hit.material));
+    STEP.points.at[3u * index + 2u] = vec4(-direction, uintBitsToFloat(hit.kind));
+    if (STEP.casts_rays != 0u)
+        STEP.origins.at[index] = shadow_origin(hit);
+}
+
+void main()
+{
+    begin_with_step();
+    const uint thread = gl_LocalInvocationID.x, across = (STEP.width + EDGE - 1u) / EDGE;
+    const uint x = group_index() % across * EDGE + thread % EDGE, y = group_index() / across * EDGE + thread / EDGE;
+    const uint pixel = y * STEP.width + x;
+    const bool is_inside = x < STEP.width && y < STEP.height;
+    vec3 direction = vec3(0.0);
+    surface_hit hit = surface_hit(0u, 0u, vec3(0.0), vec3(0.0), vec3(0.0));
+    if (thread < 2u)
+        own_counts[thread] = 0u;
+    barrier();
+    if (is_inside) {
+        direction = camera_direction(position_of(pixel));
+        hit = meet(camera_vector(0u), direction);
+    }
+    const uint list = hit.kind != 0u ? 0u : 1u;
+    const uint place = is_inside ? atomicAdd(own_counts[list], 1u) : 0u;
+    barrier();
+    if (thread < 2u)
+        own_starts[thread] = atomicAdd(STEP.counts_of_lists.at[thread], own_counts[thread]);
+    barrier();
+    if (is_inside && hit.kind != 0u)
+        store_point(own_starts[0] + place, pixel, hit, direction);
+    else if (is_inside)
+        STEP.misses.at[own_starts[1] + place] = pixel;
+}
