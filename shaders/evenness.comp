@@ -6,7 +6,7 @@
 
 const double GREATEST_VARIANCE = 0.016LF, ANGLE = 2.0943951023931953LF; // of a face, sr
 
-shared double parts[256];
+shared double parts[gl_WorkGroupSize.x];
 
 double moment(uint tile, uint which)
 {

@@ -8,7 +8,7 @@
 #include "tables.glsl"
 #include "tiles.glsl"
 
-shared double parts[3u * 256u];
+shared double parts[3u * gl_WorkGroupSize.x];
 
 void main()
 {

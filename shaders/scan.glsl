@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 // scan.glsl - what the threads of a work group find out together: the greatest of their numbers, and for each the sum of
-// those before it. By shared memory alone. Needs common.glsl; a group has at most SCAN_MOST threads.
+// those before it. By shared memory alone. Needs common.glsl.
 
-const uint SCAN_MOST = 256u, SCAN_BLOCK = 16u;
-shared uint scan_numbers[SCAN_MOST];
-shared uint scan_blocks[SCAN_MOST / SCAN_BLOCK];
+const uint SCAN_BLOCK = 16u;
+shared uint scan_numbers[gl_WorkGroupSize.x];
+shared uint scan_blocks[(gl_WorkGroupSize.x + SCAN_BLOCK - 1u) / SCAN_BLOCK];
 
 uint group_size()
 {
     return gl_WorkGroupSize.x;
 }
 
-// Numbers of the group's threads, one of each, block by block: what is done with a block of 16 by one thread is done in
-// two steps with 256.
+// Numbers of the group's threads, one of each, block by block: some threads add up a block each, and then all look at the
+// blocks.
 uint scan_block_count()
 {
     return (group_size() + SCAN_BLOCK - 1u) / SCAN_BLOCK;

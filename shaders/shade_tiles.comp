@@ -29,7 +29,7 @@ const uint GROUPS_MOST = LAYOUT_TILES_MOST / LAYOUT_TILE_GROUP, NOWHERE = GROUPS
 // NOWHERE.
 shared uint groups[GROUPS_MOST], places[GROUPS_MOST];
 shared uint sums[LAYOUT_TILES_MOST + 1]; // before each tile of these; at first the bits of the weights
-shared float parts[4u * SCAN_MOST];
+shared float parts[4u * gl_WorkGroupSize.x];
 
 // See tile_lobe in point_tiles.h.
 struct tile_lobe {
