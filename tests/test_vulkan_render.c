@@ -92,7 +92,7 @@ typedef struct difference {
 static difference compare_pictures(const stage *s, double tolerance)
 {
     const helio_picture a = helio_renderer_picture(s->vulkan), b = helio_renderer_picture(s->cpu);
-    difference d = {.count = WIDTH * HEIGHT};
+    difference d = {.count = a.width * a.height};
     for (size_t i = 0; i < d.count; i++) {
         double off = 0, size = 0;
         for (size_t c = 0; c < 4; c++) {
@@ -359,6 +359,44 @@ static void what_a_device_cannot_do_is_told(void **state)
     destroy_stage(&s);
 }
 
+/* Pictures and cubes of odd and least sizes, strategies that follow each other, two renderers at once. */
+static void renderers_come_and_go_on_a_device(void **state)
+{
+    static const struct {
+        uint32_t width, height, cube;
+        helio_strategy strategy;
+    } kinds[] = {{1, 1, 1, HELIO_STRATEGY_PRODUCT}, {17, 3, 5, HELIO_STRATEGY_FACE}, {33, 40, 2, HELIO_STRATEGY_LIGHT}};
+    const helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_FACE, .spp = 4, .pool_length = 64};
+    stage s = make_stage(MATERIALS[0], &desc);
+    (void)state;
+    light_stage_with(&s, 2);
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        helio_environment *environment;
+        assert_ok(
+            helio_environment_create(s.context, &(helio_environment_desc){.cube_size = kinds[i].cube}, &environment));
+        fill_cube(environment, MAP_RANDOM, i);
+        helio_renderer_desc own = {.environment = environment,
+                                   .scene = s.scene,
+                                   .width = kinds[i].width,
+                                   .height = kinds[i].height,
+                                   .strategy = kinds[i].strategy,
+                                   .spp = 16,
+                                   .no_visibility = true};
+        stage other = s;
+        assert_ok(helio_renderer_create(s.context, &own, &other.cpu));
+        own.device = s.device;
+        assert_ok(renderer_create(s.context, &own, &(renderer_extras){.cpu_rays = true}, &other.vulkan));
+        for (int frame = 0; frame < 2; frame++) {
+            expect_same(&other, ROUNDING, "a renderer beside another");
+            expect_same(&s, ROUNDING, "a renderer beside another");
+        }
+        helio_renderer_destroy(other.vulkan);
+        helio_renderer_destroy(other.cpu);
+        helio_environment_destroy(environment);
+    }
+    destroy_stage(&s);
+}
+
 /* ---- memory ---- */
 
 static size_t resident_bytes(void)
@@ -433,6 +471,7 @@ int main(void)
         cmocka_unit_test(black_maps_give_black_pictures),
         cmocka_unit_test(frames_stop_when_told_to),
         cmocka_unit_test(what_a_device_cannot_do_is_told),
+        cmocka_unit_test(renderers_come_and_go_on_a_device),
         cmocka_unit_test(frames_take_no_memory),
         cmocka_unit_test(memory_stays_flat),
     };
