@@ -71,8 +71,6 @@ static int check_program(const cli_options *options)
     const bool is_vulkan = is(options->backend, "vulkan");
     if (is_vulkan && is(options->ground, "shadow"))
         return message_usage("--backend vulkan has no --ground shadow yet; give another ground, or --backend cpu");
-    if (is_vulkan && options->aovs)
-        return message_usage("--backend vulkan makes no layers for --aovs; give --backend cpu");
     if (options->quiet && options->verbose)
         return message_usage("--quiet and --verbose exclude each other; give one of them");
     return EXIT_CODE_OK;

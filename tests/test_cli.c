@@ -236,7 +236,6 @@ static const struct {
     {"render --visibility all", "none or ray"},
     {"render --decorrelate blue", "hash or none"},
     {"render --backend vulkan --ground shadow", "shadow"},
-    {"render --backend vulkan --aovs", "aovs"},
     {"samples --backend vulkan", "vulkan"},
     {"bench --stages device", "backend"},
     {"render --backend gpu", "gpu"},

@@ -204,11 +204,25 @@ static void rays_of_the_device_see_the_same(void **state)
     traces = casts_rays = false;
 }
 
+/* Layers are the CPU's work in either case. */
+static void compare_layers(const stage *s)
+{
+    const helio_picture a = helio_renderer_picture(s->vulkan), b = helio_renderer_picture(s->cpu);
+    const size_t pixels = (size_t)a.width * a.height;
+    if (b.albedo == NULL)
+        return;
+    assert_memory_equal(a.albedo, b.albedo, 3 * pixels * sizeof(float));
+    assert_memory_equal(a.normal, b.normal, 3 * pixels * sizeof(float));
+    assert_memory_equal(a.position, b.position, 3 * pixels * sizeof(float));
+    assert_memory_equal(a.depth, b.depth, pixels * sizeof(float));
+}
+
 static void expect_same(stage *s, double tolerance, const char *what)
 {
     helio_frame_info cpu, vulkan;
     render_both(s, &cpu, &vulkan);
     const difference d = compare_pictures(s, tolerance);
+    compare_layers(s);
     if (d.off > 0 || vulkan.samples != cpu.samples || vulkan.passes != cpu.passes)
         fail_msg("%s: %u pixels differ, the worst by %g; %u passes in place of %u", what, d.off, d.worst, vulkan.passes,
                  cpu.passes);
@@ -218,7 +232,7 @@ static void expect_same(stage *s, double tolerance, const char *what)
 static void settings_do_what_they_do_on_the_cpu(void **state)
 {
     static const helio_renderer_desc descs[] = {
-        {.strategy = HELIO_STRATEGY_FACE, .aa = 3, .spp = 4, .pool_length = 64, .no_beta = true},
+        {.strategy = HELIO_STRATEGY_FACE, .aa = 3, .spp = 4, .pool_length = 64, .no_beta = true, .aovs = true},
         {.strategy = HELIO_STRATEGY_FACE, .aa = 2, .spp = 20, .pool_length = 64, .no_decorrelation = true},
         {.strategy = HELIO_STRATEGY_PRODUCT, .spp = 100, .bins = 3, .background = HELIO_BACKGROUND_NONE},
         {.strategy = HELIO_STRATEGY_FACE_BRDF, .weighting = HELIO_WEIGHTING_COMPENSATED},
@@ -350,11 +364,15 @@ static void what_a_device_cannot_do_is_told(void **state)
     const helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_FACE, .spp = 8};
     stage s = make_stage(MATERIALS[0], &desc);
     helio_renderer *renderer;
-    helio_renderer_desc wrong = {
-        .environment = s.environment, .scene = s.scene, .width = 8, .height = 8, .device = s.device};
+    helio_scene *catcher;
+    const helio_scene_desc scene = {.mesh = s.mesh, .ground = HELIO_GROUND_SHADOW};
     (void)state;
-    wrong.aovs = true;
+    assert_ok(helio_scene_create(s.context, &scene, &catcher));
+    const helio_renderer_desc wrong = {
+        .environment = s.environment, .scene = catcher, .width = 8, .height = 8, .device = s.device};
     assert_int_equal(helio_renderer_create(s.context, &wrong, &renderer), HELIO_ERR_UNSUPPORTED);
+    assert_non_null(strstr(helio_last_error(), "catcher"));
+    helio_scene_destroy(catcher);
     assert_int_equal(helio_renderer_render(s.vulkan, &s.frame, NULL), HELIO_ERR_ARGUMENT); /* no map yet */
     destroy_stage(&s);
 }

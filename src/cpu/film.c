@@ -68,7 +68,7 @@ void film_develop_light(const film_light *light, bool shows_background, double w
     *object = (float)(light->object * scale);
 }
 
-static void develop_surface(const struct film *film, size_t index, const film_surface *surface)
+void film_develop_surface(const struct film *film, size_t index, const film_surface *surface)
 {
     double scale = surface->count > 0 ? 1.0 / surface->count : 0.0;
     double norm = 0;
@@ -87,7 +87,7 @@ void film_develop(const struct film *film, size_t index, const film_pixel *pixel
 {
     film_develop_light(&pixel->light, film->shows_background, weight, film->rgba + index * 4, &film->object[index]);
     if (film->albedo)
-        develop_surface(film, index, &pixel->surface);
+        film_develop_surface(film, index, &pixel->surface);
 }
 
 helio_picture film_picture(const struct film *film)

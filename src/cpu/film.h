@@ -82,6 +82,9 @@ void film_develop_light(const film_light *light, bool shows_background, double w
 /* Writes a pixel of the picture. weight: of all samples that are in its sums; 0 leaves it black and clear. */
 void film_develop(const struct film *film, size_t index, const film_pixel *pixel, double weight);
 
+/* Writes a pixel of the arbitrary output variables alone. */
+void film_develop_surface(const struct film *film, size_t index, const film_surface *surface);
+
 /* Write pixels of which everything is known at once. Not for pictures with arbitrary output variables. */
 static inline void film_put(const struct film *film, size_t index, const float rgba[4], float object)
 {

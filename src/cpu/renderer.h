@@ -106,6 +106,9 @@ void primary_tile(const struct frame *frame, struct tile tile);
 /* What is to be lit in a pixel that hit something. direction: of its camera ray. */
 void shade_point(const struct frame *frame, size_t index, vec3 direction, helio_shading_point *point);
 
+/* Adds a point to the sums of a pixel's arbitrary output variables. */
+void shade_add_surface(const struct frame *frame, const helio_shading_point *point, film_surface *surface);
+
 /* Lights the tile's hits and adds them to the film. */
 void shade_tile(const struct frame *frame, struct tile tile, frame_counts *counts);
 

@@ -48,7 +48,7 @@ void shade_point(const struct frame *frame, size_t index, vec3 direction, helio_
 
 /* ---- sums ---- */
 
-static void add_surface(const struct frame *frame, const helio_shading_point *point, film_surface *surface)
+void shade_add_surface(const struct frame *frame, const helio_shading_point *point, film_surface *surface)
 {
     const helio_material *material = &point->material;
     for (int c = 0; c < 3; c++) {
@@ -142,7 +142,7 @@ static void add_pixel(const struct frame *frame, const pixel_queue *queue, uint3
     if (kind == HIT_CATCHER)
         add_light(queue->backgrounds[i], weight, pixel.light.catcher_background);
     else if (frame->renderer->film.albedo && frame->step.part == 0)
-        add_surface(frame, &queue->points[i], &pixel.surface);
+        shade_add_surface(frame, &queue->points[i], &pixel.surface);
     store_pixel(frame, index, &pixel);
 }
 

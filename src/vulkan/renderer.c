@@ -218,9 +218,9 @@ static helio_status check(const helio_renderer *renderer)
         return fail(HELIO_ERR_UNSUPPORTED,
                     "graphics processors have no shadow catcher yet; take another ground, or compute "
                     "on the CPU (--backend cpu)");
-    if (renderer->desc.aovs || renderer->extras.keeps_sums || renderer->extras.lighting != NULL)
-        return fail(HELIO_ERR_UNSUPPORTED, "graphics processors make pictures alone; for layers and references compute "
-                                           "on the CPU (--backend cpu)");
+    if (renderer->extras.keeps_sums || renderer->extras.lighting != NULL)
+        return fail(HELIO_ERR_UNSUPPORTED,
+                    "references are not made on graphics processors; compute on the CPU (--backend cpu)");
     return HELIO_OK;
 }
 
@@ -238,7 +238,7 @@ helio_status vulkan_renderer_create(helio_renderer *renderer)
         return HELIO_ERR_MEMORY;
     v->context = renderer->context;
     v->device = renderer->desc.device;
-    v->traces = can_trace(renderer->desc.scene) && !renderer->extras.cpu_rays;
+    v->traces = can_trace(renderer->desc.scene) && !renderer->desc.aovs && !renderer->extras.cpu_rays;
     helio_status status = create_parts(v, renderer);
     if (status != HELIO_OK) {
         vulkan_renderer_destroy(v);
@@ -382,11 +382,38 @@ static void trace_tile(void *data, size_t index)
     primary_tile(frame, frame_tile(frame, index));
 }
 
+/* Adds what a tile's pixels see to their layers, and finishes these with the last camera sample. */
+static void add_surfaces(void *data, size_t index)
+{
+    const struct frame *frame = data;
+    const helio_renderer *renderer = frame->renderer;
+    const struct film *film = &renderer->film;
+    const struct tile tile = frame_tile(frame, index);
+    for (uint32_t y = tile.y0; y < tile.y1; y++)
+        for (uint32_t x = tile.x0; x < tile.x1; x++) {
+            const size_t pixel = (size_t)y * film->width + x;
+            film_surface sums = {0};
+            helio_shading_point point;
+            if (film->surfaces != NULL && frame->step.camera_sample > 0)
+                sums = film->surfaces[pixel];
+            if (renderer->hits.kinds[pixel] != HIT_NOTHING) {
+                shade_point(frame, pixel, (vec3){0, 0, 0}, &point);
+                shade_add_surface(frame, &point, &sums);
+            }
+            if (film->surfaces != NULL)
+                film->surfaces[pixel] = sums;
+            if (frame->step.camera_sample + 1 == renderer->desc.aa)
+                film_develop_surface(film, pixel, &sums);
+        }
+}
+
 /* What the CPU does for the lists of points of a step, where it traces the camera rays. */
 static helio_status trace_on_cpu(helio_renderer *renderer, struct frame *frame)
 {
     renderer->hits.complete = false;
     context_parallel_for(renderer->context, frame->tile_count, trace_tile, frame);
+    if (renderer->desc.aovs)
+        context_parallel_for(renderer->context, frame->tile_count, add_surfaces, frame);
     renderer->hits.camera = frame->camera;
     renderer->hits.complete = renderer->desc.aa == 1;
     HELIO_TRY(finish_all(renderer->vulkan)); /* nobody copies the lists before */
@@ -514,6 +541,8 @@ static void develop_stopped(helio_renderer *renderer, double weight)
         if (film->shows_background)
             film->rgba[4 * i + 3] = weight > 0.0 ? 1.0f : 0.0f;
         film->object[i] *= scale;
+        if (film->surfaces != NULL)
+            film_develop_surface(film, i, &film->surfaces[i]);
     }
 }
 
