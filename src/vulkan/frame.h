@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: MIT
+ * frame.h - what a renderer holds on a device; renderer.c makes it, frame.c makes frames with it. */
+#ifndef HELIOSTAT_SRC_VULKAN_FRAME_H
+#define HELIOSTAT_SRC_VULKAN_FRAME_H
+
+#include "vulkan/light.h"
+#include "vulkan/points.h"
+#include "vulkan/renderer.h"
+
+enum { PRIMARY_EDGE = 8, BACKGROUND_THREADS = 64 }; /* pixels of a work group: along its edges; in a row */
+
+/* How work is shared out when points are lit, see shade.comp. */
+typedef struct shade_shape {
+    uint32_t threads, points, lanes;
+} shade_shape;
+
+/* Marks of a list of commands. */
+typedef struct step_marks {
+    uint32_t start, uploaded, traced, tables, pools, shaded, back;
+} step_marks;
+
+/* A frame that may still be on its way while the next is begun. */
+typedef struct frame_slot {
+    vulkan_commands commands;
+    step_marks marks;
+    vulkan_buffer counts_back, lists_back;
+    bool counts_points;    /* those of this step are new */
+    helio_frame_info info; /* as far as it is known */
+    bool is_pending;
+} frame_slot;
+
+struct vulkan_renderer {
+    helio_context *context;
+    helio_device *device;
+    frame_slot slots[LIGHT_SLOTS];
+    uint32_t next;                /* slot */
+    helio_frame_info latest_info; /* of the latest frame that is known to be over */
+    vulkan_light light;
+    vulkan_points points;
+    bool traces;      /* camera rays too; else the CPU does */
+    struct hits seen; /* what the lists of points belong to, without arrays */
+    bool has_points;  /* the lists are those of the step in hand */
+    shade_shape shape;
+    VkPipeline primary, list_groups, shade, background;
+    VkPipeline shade_tiles;                      /* where points that shine weigh tiles; else nothing */
+    vulkan_buffer step, counts, picture, object; /* on the device */
+    vulkan_buffer picture_back, object_back;
+    vulkan_buffer nodes, triangles, normals; /* for rays; else nothing */
+};
+
+/* Are shadow rays wanted? */
+static inline bool casts_rays(const helio_renderer *renderer)
+{
+    return !renderer->desc.no_visibility;
+}
+
+#endif
