@@ -441,7 +441,11 @@ static void memory_stays_flat(void **state)
     const size_t before = resident_bytes();
     for (int i = 0; i < frames; i++)
         assert_ok(helio_renderer_render(s.vulkan, &s.frame, NULL));
-    assert_true(resident_bytes() < before + (2u << 20));
+    const size_t after = resident_bytes();
+    print_message("%zu KiB before, %zu after\n", before >> 10, after >> 10);
+#ifndef __SANITIZE_ADDRESS__ /* which keeps what was released */
+    assert_true(after < before + (2u << 20));
+#endif
     destroy_stage(&s);
 }
 
