@@ -66,7 +66,7 @@ void bench_axis_move(const bench *b, bench_axis axis, uint32_t index, bench_poin
 
 /* ---- measuring ------------------------------------------------------------------------ */
 
-enum { BENCH_TIMES = 6, BENCH_JOBS = 2 };
+enum { BENCH_TIMES = 7, BENCH_JOBS = 2 };
 
 /* Something whose time is taken. Where time_count is 0 the time of the call is taken, many calls at once if it is
  * short; else run itself writes so many times into times, in ms. */

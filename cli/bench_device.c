@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Frames on a graphics processor: the cube is sent each time, the picture is left where it is. */
+ * Frames on a graphics processor: a map is sent each time, the picture is left where it is. */
 #include "bench_frame.h"
 
 #include "machine.h"
@@ -13,6 +13,7 @@ enum { FRAMES_IN_A_ROW = 64, FRAMES_OF_SOFTWARE = 3 };
 typedef enum device_time {
     DEVICE_FRAME, /* by the host's clock */
     DEVICE_UPLOAD,
+    DEVICE_CUBE,
     DEVICE_TABLES,
     DEVICE_POOLS,
     DEVICE_SHADE,
@@ -21,9 +22,10 @@ typedef enum device_time {
 } device_time;
 _Static_assert((int)DEVICE_TIMES == (int)BENCH_TIMES && (int)DEVICE_TIMES == BENCH_PARTS + 1, "all are kept");
 
-static const char *const part_names[BENCH_PARTS] = {"upload_ms", "tables_ms", "pools_ms", "shade_ms", "read_back_ms"};
-static const char *const part_labels[BENCH_PARTS] = {"cube to the device", "tables", "pools", "shading",
-                                                     "picture to the host"};
+static const char *const part_names[BENCH_PARTS] = {"upload_ms", "cube_ms",  "tables_ms",
+                                                    "pools_ms",  "shade_ms", "read_back_ms"};
+static const char *const part_labels[BENCH_PARTS] = {
+    "light to the device", "map into cube", "tables", "pools", "shading", "picture to the host"};
 
 /* ---- one frame -------------------------------------------------------------------------- */
 
@@ -37,8 +39,8 @@ static int read_picture(frame_work *work, double *milliseconds)
     return code;
 }
 
-/* Several in a row, as the next is begun while one is on its way: the time of one is what they take by the host's
- * clock, divided by their number. */
+/* Several in a row, each of another map, as the next is begun while one is on its way: the time of one is what they
+ * take by the host's clock, divided by their number. */
 static helio_status render_row(frame_work *work, double *milliseconds)
 {
     helio_frame_desc desc = {
@@ -46,8 +48,11 @@ static helio_status render_row(frame_work *work, double *milliseconds)
     helio_status status = HELIO_OK;
     const double start = machine_milliseconds();
     for (uint32_t i = 0; status == HELIO_OK && i < work->row; i++) {
+        const float *rgb = work->frame++ % 2 ? work->other_map.rgb : work->light->map.rgb;
         desc.seed = i;
-        status = helio_renderer_render(work->renderer, &desc, &work->info);
+        status = helio_environment_update(work->light->environment, rgb, NULL);
+        if (status == HELIO_OK)
+            status = helio_renderer_render(work->renderer, &desc, &work->info);
     }
     *milliseconds = (machine_milliseconds() - start) / work->row;
     return status;
@@ -56,11 +61,9 @@ static helio_status render_row(frame_work *work, double *milliseconds)
 static int run_frame(void *data, double *times)
 {
     frame_work *work = data;
-    const float *rgb = work->frame++ % 2 ? work->other_map.rgb : work->light->map.rgb;
-    helio_status status = helio_environment_update(work->light->environment, rgb, NULL);
-    if (status == HELIO_OK)
-        status = render_row(work, &times[DEVICE_FRAME]);
+    helio_status status = render_row(work, &times[DEVICE_FRAME]);
     times[DEVICE_UPLOAD] = work->info.upload_ms;
+    times[DEVICE_CUBE] = work->info.cube_ms;
     times[DEVICE_TABLES] = work->info.tables_ms;
     times[DEVICE_POOLS] = work->info.pools_ms;
     times[DEVICE_SHADE] = work->info.shade_ms;
@@ -79,14 +82,18 @@ static int create(bench *b, const bench_point *point, void *data, bench_job *job
 
 /* ---- results ---------------------------------------------------------------------------- */
 
-/* What is read or written at the least, in bytes: the cube and its copy; the cube, solid angles and tables; what is
- * known of the points, and the picture. Of pools nobody can tell: they come from caches. */
+/* What is read or written at the least, in bytes: the map; the map and its cube; the cube, solid angles and tables;
+ * what is known of the points, and the picture. Cubes of software are the CPU's, and are sent. Of pools nobody can
+ * tell: they come from caches. */
 static double part_bytes(const frame_work *work, int part)
 {
     const double size = work->point.env_size, pixels = (double)work->size[0] * work->size[1];
+    const double map = 12.0 * work->point.map[0] * work->point.map[1];
     const double cube = 6 * size * size * 12, points = (double)work->info.points;
+    const bool is_software = helio_device_get_info(work->device).kind == HELIO_DEVICE_SOFTWARE;
     switch (1 + part) {
-    case DEVICE_UPLOAD: return cube;
+    case DEVICE_UPLOAD: return is_software ? cube : map;
+    case DEVICE_CUBE: return is_software ? 0 : map + cube;
     case DEVICE_TABLES: return cube + 4 * size * size + 6 * size * (size + 1) * 4;
     case DEVICE_SHADE: return points * 48 + (pixels - points) * 16 + pixels * 20;
     case DEVICE_BACK: return pixels * 20;
@@ -114,7 +121,7 @@ static void fill(const void *data, const bench_job *jobs, bench_result *result)
 /* What the time of the first strategy's frame goes to. */
 static int publish_parts(bench *b, const bench_result *frame, double copy_rate)
 {
-    frame_work shape = {.point = bench_first_point(b), .size = {frame->size[0], frame->size[1]}};
+    frame_work shape = {.point = bench_first_point(b), .size = {frame->size[0], frame->size[1]}, .device = b->device};
     bench_result lines[BENCH_PARTS];
     shape.info.points = (uint64_t)(frame->coverage * frame->size[0] * frame->size[1]);
     for (int i = 0; i < BENCH_PARTS; i++) {
@@ -147,7 +154,7 @@ int bench_run_device(bench *b)
     static const bench_axis axes[] = {BENCH_BY_STRATEGY, BENCH_BY_SCENARIO, BENCH_BY_SPP, BENCH_BY_CUBE};
     const uint32_t *size = b->plan->options->size;
     char title[256];
-    snprintf(title, sizeof title, "Frames of %.60s, %ux%u, the cube sent for each, no shadow rays", b->plan->mesh_name,
+    snprintf(title, sizeof title, "Frames of %.60s, %ux%u, the map sent for each, no shadow rays", b->plan->mesh_name,
              size[0], size[1]);
     const bench_subject subject = {title, "frames/s", sizeof(frame_work), create, fill, frame_work_release};
     double copy_rate = 0;

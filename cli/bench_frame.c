@@ -9,7 +9,8 @@
 
 #include <stdio.h>
 
-static const char *const part_names[BENCH_PARTS] = {"cube_ms", "tables_ms", "pools_ms", "primary_ms", "shade_ms"};
+enum { PARTS = 5 };
+static const char *const part_names[PARTS] = {"cube_ms", "tables_ms", "pools_ms", "primary_ms", "shade_ms"};
 
 static bool go_on(void *user, float done)
 {
@@ -82,7 +83,7 @@ int frame_work_create(bench *b, const bench_point *point, void *data, bench_job 
     work->point = *point;
     work->size[0] = is_small ? half(size[0]) : size[0];
     work->size[1] = is_small ? half(size[1]) : size[1];
-    jobs[0] = (bench_job){.run = run_frame, .data = work, .time_count = 1 + BENCH_PARTS};
+    jobs[0] = (bench_job){.run = run_frame, .data = work, .time_count = 1 + PARTS};
     int code = bench_light_at(b, point, &work->light);
     if (code == EXIT_CODE_OK)
         code = bench_map_create(b->source, point->map, 90, &work->other_map);
@@ -117,7 +118,7 @@ void frame_work_fill(const frame_work *work, const bench_job *jobs, bench_result
     result->camera_rays = point->scenario == BENCH_TRACED ? "traced" : "kept";
     result->coverage = (double)work->info.points / ((double)work->size[0] * work->size[1]);
     bench_mesh_describe(&work->mesh, result);
-    for (int i = 0; i < BENCH_PARTS; i++) {
+    for (int i = 0; i < PARTS; i++) {
         result->part_names[i] = part_names[i];
         result->parts[i] = bench_time(&jobs[0], 1 + (uint32_t)i);
     }
@@ -138,16 +139,16 @@ static void fill_frame(const void *data, const bench_job *jobs, bench_result *re
 /* The first of the results that the stage has published: what a frame's time goes to. */
 static void print_parts(const bench *b, size_t first)
 {
-    static const char *const labels[BENCH_PARTS] = {"map into cube", "tables", "pools", "camera rays", "shading"};
+    static const char *const labels[PARTS] = {"map into cube", "tables", "pools", "camera rays", "shading"};
     const bench_result *frame = &b->results.items[first];
-    bench_result lines[BENCH_PARTS] = {0};
-    for (int i = 0; i < BENCH_PARTS; i++) {
+    bench_result lines[PARTS] = {0};
+    for (int i = 0; i < PARTS; i++) {
         lines[i].unit = "ms";
         lines[i].value = frame->parts[i];
         snprintf(lines[i].label, sizeof lines[i].label, "%s", labels[i]);
     }
     if (b->shows_table)
-        bench_table_print("Parts of a frame with camera rays kept", lines, BENCH_PARTS);
+        bench_table_print("Parts of a frame with camera rays kept", lines, PARTS);
 }
 
 int bench_run_frame(bench *b)

@@ -162,7 +162,7 @@ static int render_frame(samples_run *run, const helio_source_frame *frame)
     if (render_job_light(&run->job, frame, &light, &stats) != HELIO_OK)
         return fail_with_library();
     note_frame(run, frame, &light);
-    if (render_job_render(&run->job, frame->index, &stats, &is_whole) != HELIO_OK)
+    if (render_job_render(&run->job, frame, &stats, &is_whole) != HELIO_OK)
         return fail_with_library();
     return is_whole ? look_at_pixel(run) : EXIT_CODE_OK;
 }

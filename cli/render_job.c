@@ -190,13 +190,6 @@ helio_status render_job_next(render_job *job, helio_source_frame *frame, stats_f
     return status;
 }
 
-static void note_light(stats_frame *stats, const helio_environment_info *light, const helio_bad_pixels *stored)
-{
-    stats_note_bad_pixels(stats, stored, &light->bad);
-    for (int face = 0; face < 6; face++)
-        stats->flux += light->flux[face];
-}
-
 /* Frames of a sequence have names of their own; those of a video have numbers. */
 static void make_label(const render_job *job, const helio_source_frame *frame, char label[SINK_PATH_SIZE])
 {
@@ -205,6 +198,19 @@ static void make_label(const render_job *job, const helio_source_frame *frame, c
         snprintf(label, SINK_PATH_SIZE, "%s: frame %" PRIu64, frame->name, frame->index);
     else
         snprintf(label, SINK_PATH_SIZE, "%s", frame->name);
+}
+
+static void note_light(render_job *job, const helio_source_frame *frame, const helio_bad_pixels *bad,
+                       const double flux[6], stats_frame *stats)
+{
+    char label[SINK_PATH_SIZE];
+    make_label(job, frame, label);
+    stats_note_bad_pixels(stats, &frame->bad, bad);
+    for (int face = 0; face < 6; face++)
+        stats->flux += flux[face];
+    if (frame->rgb != NULL)
+        frame_warnings_size(&job->warnings, label, frame);
+    frame_warnings_bad_pixels(&job->warnings, label, stats);
 }
 
 helio_status render_job_light(render_job *job, const helio_source_frame *frame, helio_environment_info *light,
@@ -217,10 +223,9 @@ helio_status render_job_light(render_job *job, const helio_source_frame *frame, 
     stats->cube_ms = machine_milliseconds() - start;
     if (status != HELIO_OK)
         return status;
-    note_light(stats, light, &frame->bad);
-    if (frame->rgb != NULL)
-        frame_warnings_size(&job->warnings, label, frame);
-    frame_warnings_bad_pixels(&job->warnings, label, stats);
+    job->light_is_late = light == NULL;
+    if (light != NULL)
+        note_light(job, frame, &light->bad, light->flux, stats);
     if (job->plan.options->verbose && frame->rgb != NULL)
         message_note("%s: %" PRIu32 "x%" PRIu32 " pixels, layout %s, read in %.0f ms; cube filled in %.0f ms", label,
                      frame->width, frame->height, helio_layout_name(frame->layout), frame->read_ms, stats->cube_ms);
@@ -252,13 +257,17 @@ helio_frame_desc render_job_frame(render_job *job, uint64_t index)
     };
 }
 
-helio_status render_job_render(render_job *job, uint64_t index, stats_frame *stats, bool *is_whole)
+helio_status render_job_render(render_job *job, const helio_source_frame *frame, stats_frame *stats, bool *is_whole)
 {
+    const uint64_t index = frame->index;
     const helio_frame_desc desc = render_job_frame(job, index);
     helio_frame_info info = {0};
     helio_status status = helio_renderer_render(job->renderer, &desc, &info);
     *is_whole = status == HELIO_OK && !info.stopped;
     job->passes = info.passes;
+    if (job->light_is_late && status == HELIO_OK)
+        note_light(job, frame, &info.bad, info.flux, stats);
+    stats->cube_ms += info.cube_ms;
     stats->tables_ms = info.tables_ms;
     stats->pools_ms = info.pools_ms;
     stats->primary_ms = info.primary_ms;

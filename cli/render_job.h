@@ -22,8 +22,9 @@ typedef struct render_job {
     helio_camera camera;
     progress_bar progress;
     frame_warnings warnings;
-    frame_error error; /* against --reference */
-    uint32_t passes;   /* of the latest frame */
+    frame_error error;  /* against --reference */
+    uint32_t passes;    /* of the latest frame */
+    bool light_is_late; /* the device makes the cube: of the frame's light is told when it is rendered */
 } render_job;
 
 /* Understands the options, opens the source and starts reading it, and loads the scene. Returns an exit code; one
@@ -44,14 +45,15 @@ void render_job_close(render_job *job);
 /* The next frame of the source; rgb and sky are NULL at the end. */
 helio_status render_job_next(render_job *job, helio_source_frame *frame, stats_frame *stats);
 
-/* Makes it the light of the scene. light: what was seen in it. */
+/* Makes it the light of the scene. light: what was seen in it; NULL, where a device renders: nobody needs to know
+ * before the frame is rendered, and the device may make the cube. */
 helio_status render_job_light(render_job *job, const helio_source_frame *frame, helio_environment_info *light,
                               stats_frame *stats);
 
 /* What the renderer is asked for when it renders frame `index`. */
 helio_frame_desc render_job_frame(render_job *job, uint64_t index);
 
-/* Renders what is lit now. *is_whole is false where a signal stopped it. */
-helio_status render_job_render(render_job *job, uint64_t index, stats_frame *stats, bool *is_whole);
+/* Renders what is lit now, by this frame. *is_whole is false where a signal stopped it. */
+helio_status render_job_render(render_job *job, const helio_source_frame *frame, stats_frame *stats, bool *is_whole);
 
 #endif

@@ -72,9 +72,10 @@ static bool light_first(render_sequence *sequence, const helio_source_frame *fra
                day_exposure_find(job->context, job->plan.light.specification, job->environment, &sequence->exposure)))
         return false;
     helio_environment_info light;
-    if (!check(sequence, render_job_light(job, frame, &light, stats)))
+    const bool is_asked = !is_day && isnan(exposure);
+    if (!check(sequence, render_job_light(job, frame, is_asked || job->device == NULL ? &light : NULL, stats)))
         return false;
-    if (!is_day && isnan(exposure))
+    if (is_asked)
         sequence->exposure = light.auto_exposure;
     return true;
 }
@@ -170,7 +171,7 @@ static bool render_frame(render_sequence *sequence, const helio_source_frame *fr
     bool is_whole;
     if (!check_code(sequence, frame_error_prepare(&sequence->job->error, frame->index, stats)))
         return false;
-    if (!check(sequence, render_job_render(sequence->job, frame->index, stats, &is_whole)))
+    if (!check(sequence, render_job_render(sequence->job, frame, stats, &is_whole)))
         return false;
     if (!is_whole)
         return fail_with(sequence, "");
@@ -189,7 +190,8 @@ static bool end_frame(render_sequence *sequence, stats_frame *stats, double star
 static bool light_frame(render_sequence *sequence, const helio_source_frame *frame, stats_frame *stats, bool is_lit)
 {
     helio_environment_info info;
-    return is_lit || check(sequence, render_job_light(sequence->job, frame, &info, stats));
+    render_job *job = sequence->job;
+    return is_lit || check(sequence, render_job_light(job, frame, job->device == NULL ? &info : NULL, stats));
 }
 
 static bool process(render_sequence *sequence, const helio_source_frame *frame, stats_frame *stats, double started)

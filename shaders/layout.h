@@ -24,6 +24,7 @@
 #endif
 
 #define LAYOUT_FACES 6
+#define LAYOUT_VIEWS (4 * LAYOUT_FACES) /* of quarters of faces */
 #define LAYOUT_TECHNIQUES 7 /* as in strategy.h: the last is the surface's */
 #define LAYOUT_TILES_PER_EDGE 16
 #define LAYOUT_TILE_GROUP 16 /* tiles that follow each other */
@@ -106,6 +107,30 @@ struct layout_counts {
     UINT useful[2];
 };
 
+/* Pixels that were no light, see pixel_fault.h. */
+struct layout_faults {
+    UINT nan, infinite, negative;
+    UINT padding;
+};
+
+/* How a quarter of a face sees the map, see resampler_plan.h. */
+struct layout_view {
+    INT row_offset, row_sign;
+    INT column_offset, column_sign;
+    UINT first_start; /* of its list */
+};
+
+/* A texel of the cube under which there are many pixels; among the starts it has this bit. */
+#define LAYOUT_IS_LARGE 0x80000000u
+struct layout_large {
+    UINT texel, view, place; /* place: among the starts */
+};
+
+/* struct overlap_patch */
+struct layout_patch {
+    UINT weight, row, column, shape;
+};
+
 #ifdef VULKAN
 layout(buffer_reference, std430, buffer_reference_align = 4) buffer floats
 {
@@ -138,6 +163,18 @@ layout(buffer_reference, std430, buffer_reference_align = 16) buffer vectors
 layout(buffer_reference, std430, buffer_reference_align = 4) buffer counts_of_frame
 {
     layout_counts all;
+};
+layout(buffer_reference, std430, buffer_reference_align = 4) buffer faults_of_map
+{
+    layout_faults all;
+};
+layout(buffer_reference, std430, buffer_reference_align = 4) buffer large_texels
+{
+    layout_large at[];
+};
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer patches_of_map
+{
+    layout_patch at[];
 };
 #endif
 
@@ -214,6 +251,22 @@ struct layout_step {
     UINT has_ground;
 };
 
+/* A map, and how it becomes a cube. Passes over a map push one instead of a step. */
+struct layout_map {
+    ADDRESS(uints, pixels);           /* rows without padding */
+    ADDRESS(uints, starts);           /* see overlap_table.h */
+    ADDRESS(patches_of_map, patches);
+    ADDRESS(floats, weights);
+    ADDRESS(large_texels, large);
+    ADDRESS(faults_of_map, faults);
+    UINT width, height;               /* pixels */
+    UINT channels;                    /* of a pixel, 3 or 4 */
+    UINT part_shift;                  /* columns of views are as many parts of a pixel, 1 << part_shift */
+    UINT edge;                        /* texels along an edge of a quarter of a face */
+    UINT padding;
+    STRUCT layout_view views[LAYOUT_VIEWS]; /* [face][from below][from the right] */
+};
+
 /* What is pushed. */
 struct layout_push {
     UINT state[2], step[2]; /* addresses */
@@ -225,6 +278,7 @@ _Static_assert(sizeof(struct layout_sums) == 176, "as in the shaders");
 _Static_assert(sizeof(struct layout_material) == 48 && sizeof(struct layout_point) == 48, "as in the shaders");
 _Static_assert(sizeof(struct layout_state) == 23 * 8 + 18 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_step) == 12 * 8 + 56 * 4, "as in the shaders");
+_Static_assert(sizeof(struct layout_map) == 6 * 8 + 6 * 4 + LAYOUT_VIEWS * 20, "as in the shaders");
 _Static_assert(sizeof(struct layout_push) == 32, "as in the shaders");
 #endif
 #endif

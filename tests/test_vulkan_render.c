@@ -479,6 +479,131 @@ static void frames_take_no_memory(void **state)
     destroy_stage(&s);
 }
 
+/* ---- maps ---- */
+
+enum { MAP_WIDTH = 96, MAP_HEIGHT = 48, MAP_NUMBERS = MAP_WIDTH * MAP_HEIGHT * 3 };
+
+/* A sky with a sun, and `bad` pixels of each kind. */
+static void fill_map(float *rgb, uint64_t seed, size_t bad)
+{
+    for (size_t i = 0; i < MAP_NUMBERS; i++)
+        rgb[i] = 0.2f + (float)random_unit(&seed);
+    for (size_t c = 0; c < 6; c++)
+        rgb[(size_t)(11 * MAP_WIDTH + 20) * 3 + c] = 3000.0f;
+    for (size_t i = 0; i < bad; i++) {
+        rgb[i * 9] = NAN;
+        rgb[i * 9 + 4] = -1.0f;
+        rgb[i * 9 + 8] = INFINITY;
+    }
+}
+
+static void expect_light(const helio_frame_info *found, const helio_environment_info *expected)
+{
+    assert_int_equal(found->bad.nan, expected->bad.nan);
+    assert_int_equal(found->bad.infinite, expected->bad.infinite);
+    assert_int_equal(found->bad.negative, expected->bad.negative);
+    for (size_t face = 0; face < 6; face++)
+        assert_true(fabs(found->flux[face] / expected->flux[face] - 1) < 1e-5);
+}
+
+/* Software would leave cubes to the CPU. */
+static stage make_map_stage(const helio_renderer_desc *desc)
+{
+    plays_hardware = true;
+    stage s = make_stage(MATERIALS[0], desc);
+    plays_hardware = false;
+    assert_ok(helio_environment_reshape(s.environment, MAP_WIDTH, MAP_HEIGHT, HELIO_LAYOUT_LATLONG));
+    return s;
+}
+
+/* A device's cubes differ in the last bits, so that a sample's row or column may be another: in few pixels. */
+static void frames_of_maps_give_the_pictures_of_the_cpu(void **state)
+{
+    static float rgb[MAP_NUMBERS];
+    const helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_FACE, .spp = 64, .pool_length = 64};
+    stage s = make_map_stage(&desc);
+    helio_frame_info cpu, vulkan;
+    helio_environment_info info;
+    (void)state;
+    for (size_t i = 0; i < 6; i++) {
+        fill_map(rgb, i, i);
+        assert_ok(helio_environment_update(s.environment, rgb, &info));
+        assert_ok(helio_renderer_render(s.cpu, &s.frame, &cpu));
+        assert_ok(helio_environment_update(s.environment, rgb, NULL));
+        assert_ok(helio_renderer_render(s.vulkan, &s.frame, &vulkan));
+        assert_true(s.environment->is_late); /* nobody has asked the CPU for it */
+        expect_light(&vulkan, &info);
+        const difference d = compare_pictures(&s, 1e-3);
+        print_message("a frame of a map: mean %.2e, worst %.2e, %u of %u pixels off\n", d.mean, d.worst, d.off,
+                      d.count);
+        assert_true(d.mean <= 1e-4 && d.off <= PIXELS_BESIDE * d.count);
+    }
+    destroy_stage(&s);
+}
+
+/* Counts of a frame come with it or with a later one, and are those of its own map. */
+static void counts_belong_to_their_frames(void **state)
+{
+    static float rgb[MAP_NUMBERS];
+    const helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_FACE, .spp = 8, .pool_length = 64};
+    stage s = make_map_stage(&desc);
+    helio_frame_info info;
+    uint64_t next = 0;
+    (void)state;
+    s.frame.no_picture = true;
+    for (size_t i = 0; i < 12; i++) {
+        fill_map(rgb, i, 1 + i);
+        assert_ok(helio_environment_update(s.environment, rgb, NULL));
+        memset(rgb, 0, sizeof rgb); /* it was copied */
+        s.frame.no_picture = i < 11;
+        assert_ok(helio_renderer_render(s.vulkan, &s.frame, &info));
+        assert_true(info.bad.nan >= next && info.bad.nan <= i + 1);
+        assert_true(info.bad.negative == info.bad.nan && info.bad.infinite == info.bad.nan);
+        assert_true(i < 2 || info.bad.nan > 0);
+        next = info.bad.nan;
+    }
+    assert_int_equal(next, 12);
+    destroy_stage(&s);
+}
+
+/* Nor do maps, once a shape is known. */
+static void maps_take_no_memory(void **state)
+{
+    static float rgb[MAP_NUMBERS];
+    memory_count count = {0};
+    helio_context *context = make_context(1, &count);
+    helio_environment *environment;
+    const helio_environment_desc desc = {SIZE, MAP_WIDTH, MAP_HEIGHT, HELIO_LAYOUT_LATLONG};
+    stage s = make_map_stage(&(helio_renderer_desc){.spp = 8, .strategy = HELIO_STRATEGY_FACE});
+    (void)state;
+    const size_t live = count.live;
+    fill_map(rgb, 1, 1);
+    assert_ok(helio_environment_create(context, &desc, &environment));
+    const helio_renderer_desc own = {.environment = environment,
+                                     .scene = s.scene,
+                                     .width = 16,
+                                     .height = 16,
+                                     .spp = 8,
+                                     .strategy = HELIO_STRATEGY_FACE,
+                                     .no_visibility = true,
+                                     .device = s.device};
+    helio_renderer *renderer;
+    assert_ok(helio_renderer_create(context, &own, &renderer));
+    size_t taken = 0;
+    s.frame.no_picture = true;
+    for (int i = 0; i < 8; i++) {
+        assert_ok(helio_environment_update(environment, rgb, NULL));
+        assert_ok(helio_renderer_render(renderer, &s.frame, NULL));
+        taken = i == 0 ? count.taken : taken;
+        assert_int_equal(count.taken, taken);
+    }
+    helio_renderer_destroy(renderer);
+    helio_environment_destroy(environment);
+    assert_int_equal(count.live, live);
+    helio_context_destroy(context);
+    destroy_stage(&s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -496,6 +621,9 @@ int main(void)
         cmocka_unit_test(renderers_come_and_go_on_a_device),
         cmocka_unit_test(frames_take_no_memory),
         cmocka_unit_test(memory_stays_flat),
+        cmocka_unit_test(frames_of_maps_give_the_pictures_of_the_cpu),
+        cmocka_unit_test(counts_belong_to_their_frames),
+        cmocka_unit_test(maps_take_no_memory),
     };
     return cmocka_run_group_tests_name("vulkan_render", tests, NULL, NULL);
 }

@@ -136,6 +136,7 @@ void world_update(vulkan_world *w, uint32_t seed, uint32_t pass)
     assert_ok(light_send(&w->light, 1 - w->light.slot));
     assert_ok(commands_begin(&w->commands));
     commands_write(&w->commands, &w->step, &step, sizeof step);
+    light_record_resampling(&w->light, &w->commands);
     light_record_tables(&w->light, &w->commands);
     light_record_pools(&w->light, &w->commands, w->step.address, true);
     assert_ok(commands_submit_between(&w->commands, light_sent(&w->light), VK_NULL_HANDLE));

@@ -62,7 +62,11 @@ HELIO_API void helio_environment_destroy(helio_environment *environment);
 
 /* Makes the cube of a new frame. rgb: [height][width][3] as promised at creation, copied; may hold any bits.
  * A cube texel is the average of the map over the texel's solid angle, so light is neither lost nor gained when the map
- * shrinks: a sun of one pixel keeps its flux. info may be NULL. */
+ * shrinks: a sun of one pixel keeps its flux. info may be NULL.
+ * Without info the cube may be made elsewhere: where a renderer with a device lives, the first one of the environment,
+ * it sends the map as it is and makes the cube there, and helio_frame_info tells what was found. A cube on the CPU is
+ * then made when something wants to read it, within that call, which must be on a thread that could update the
+ * environment. */
 HELIO_API helio_status helio_environment_update(helio_environment *environment, const float *rgb,
                                                 helio_environment_info *info);
 

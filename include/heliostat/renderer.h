@@ -68,14 +68,17 @@ typedef struct helio_frame_info {
                                                          shared out in proportion to what threads spent on each.
                                                          With a device all but camera rays is by its own clock, 0
                                                          where it has none. */
-    double upload_ms, read_back_ms;                   /* with a device: cube and points to it, and the picture back */
-    uint32_t passes;                                  /* how often the pools were redrawn */
-    uint64_t samples;                                 /* light + BRDF samples taken */
-    uint64_t samples_useful;                          /* above the horizon, with light, with a BRDF > 0 */
-    uint64_t rays;                                    /* shadow rays */
-    uint64_t camera_rays;                             /* traced; 0 where those of the previous frame still hold */
-    uint64_t points;                                  /* shading points: camera samples that hit something */
-    bool stopped;                                     /* progress said so */
+    double upload_ms, read_back_ms; /* with a device: map or cube, and points, to it, and the picture back */
+    double cube_ms;          /* with a device: map into cube, where it makes that: see helio_environment_update() */
+    helio_bad_pixels bad;    /* of the map, where a device has made the cube; else 0: the update has told */
+    double flux[6];          /* of the environment's faces, by the tables: see helio_environment_info */
+    uint32_t passes;         /* how often the pools were redrawn */
+    uint64_t samples;        /* light + BRDF samples taken */
+    uint64_t samples_useful; /* above the horizon, with light, with a BRDF > 0 */
+    uint64_t rays;           /* shadow rays */
+    uint64_t camera_rays;    /* traced; 0 where those of the previous frame still hold */
+    uint64_t points;         /* shading points: camera samples that hit something */
+    bool stopped;            /* progress said so */
 } helio_frame_info;
 
 /* Takes all memory. Makes its own tables and pools. */

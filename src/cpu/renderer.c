@@ -228,6 +228,7 @@ static helio_status render_on_cpu(helio_renderer *renderer, const helio_frame_de
     double start = frame_milliseconds();
     HELIO_TRY(helio_tables_update(renderer->tables));
     info->tables_ms = frame_milliseconds() - start;
+    helio_tables_flux(renderer->tables, info->flux);
     struct frame frame = frame_begin(renderer, &camera, desc->seed);
     HELIO_TRY(run_steps(renderer, &frame, desc, info));
     info->samples = frame.samples;

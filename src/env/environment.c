@@ -55,6 +55,7 @@ helio_status helio_environment_reshape(helio_environment *environment, uint32_t 
     if (width == map->width && height == map->height && layout == map->layout)
         return HELIO_OK;
     HELIO_TRY(create_map(environment->context, environment->size, width, height, layout, &replacement));
+    environment_settle(environment);
     release_map(environment->context, map);
     *map = replacement;
     return HELIO_OK;
@@ -178,5 +179,6 @@ uint64_t helio_environment_frame(const helio_environment *environment)
 
 const float *helio_environment_cube(const helio_environment *environment)
 {
+    environment_settle(environment);
     return environment->cube;
 }

@@ -5,10 +5,12 @@
 
 #include "core/vector.h"
 #include "env/cube.h"
+#include "env/map_pixels.h"
 
 #include <heliostat/environment.h>
 
 typedef struct resampler resampler;
+typedef struct map_sink map_sink; /* see map_sink.h */
 
 /* What depends on the shape of the maps to come. */
 typedef struct environment_map {
@@ -22,9 +24,12 @@ struct helio_environment {
     helio_context *context;
     uint32_t size; /* R */
     uint64_t frame;
-    float *cube;        /* [6][R][R][3] */
+    float *cube;        /* [6][R][R][3]; old while it is late: call environment_settle() before it is read */
     float *solid_angle; /* [R][R], sr, the same for all faces */
     environment_map map;
+    map_sink *sink;   /* or NULL */
+    bool is_late;     /* the sink has the map of this frame, and the cube is not made yet ... */
+    map_pixels late;  /* ... of its copy */
     vec3 map_axes[3]; /* world axes X Y Z as seen in the map's space: rows of an orthogonal matrix's transpose */
     float intensity;
 };
@@ -52,6 +57,15 @@ static inline const float *environment_texel(const helio_environment *environmen
 /* Checks the shape of a map and guesses its layout where it is AUTO; FACES becomes STRIP, which is the same in memory.
  */
 helio_status environment_resolve_map(uint32_t width, uint32_t height, helio_layout *layout);
+
+/* Makes the cube of this frame if it is late. On the thread that updates, and not inside of a loop of the context. */
+void environment_make_late_cube(helio_environment *environment);
+
+static inline void environment_settle(const helio_environment *environment)
+{
+    if (environment->is_late)
+        environment_make_late_cube((helio_environment *)environment); /* nobody sees that it was not there */
+}
 
 /* Call when the cube of a new frame is there, whoever made it. bad: of the map, zero where there is none. info may be
  * NULL. */

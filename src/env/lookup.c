@@ -12,6 +12,7 @@ void helio_environment_to_map(const helio_environment *environment, const float 
 
 void helio_environment_radiance(const helio_environment *environment, const float direction[3], float radiance[3])
 {
+    environment_settle(environment);
     cube_position at = cube_project(environment_to_map(environment, vec3_from(direction)));
     const float *texel = environment_texel(environment, at.face, cube_texel(at.v, environment->size),
                                            cube_texel(at.u, environment->size));
@@ -47,6 +48,7 @@ static void texels_around(const helio_environment *environment, uint32_t face, f
 
 void helio_environment_filtered(const helio_environment *environment, const float direction[3], float radiance[3])
 {
+    environment_settle(environment);
     cube_position at = cube_project(environment_to_map(environment, vec3_from(direction)));
     float size = (float)environment->size, texels[4][3];
     float x = (at.u + 1.0f) * 0.5f * size - 0.5f, y = (at.v + 1.0f) * 0.5f * size - 0.5f;

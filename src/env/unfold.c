@@ -162,6 +162,7 @@ helio_status helio_environment_unfold(const helio_environment *environment, heli
     if (environment == NULL || rgb == NULL)
         return fail(HELIO_ERR_ARGUMENT, "helio_environment_unfold needs an environment and a place for the map");
     HELIO_TRY(environment_resolve_map(width, height, &layout));
+    environment_settle(environment);
     resampler *plan;
     helio_status status = resampler_create(environment->context, layout, width, height, environment->size, &plan);
     if (status == HELIO_OK) {

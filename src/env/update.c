@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "env/environment.h"
 #include "env/exposure.h"
+#include "env/map_sink.h"
 #include "env/resampler.h"
 #include "image/pixel_fault.h"
 #include "sampling/kernels.h"
@@ -60,6 +61,7 @@ static helio_bad_pixels count_all_faults(hygiene *work)
 void environment_finish_frame(helio_environment *environment, helio_bad_pixels bad, helio_environment_info *info)
 {
     environment->frame++;
+    environment->is_late = false;
     if (info == NULL)
         return;
     *info = (helio_environment_info){.bad = bad};
@@ -99,6 +101,10 @@ helio_status helio_environment_update_pixels(helio_environment *environment, con
                                         "helio_environment_reshape() before it is updated from one");
     hygiene work = {.environment = environment, .kernels = kernels_of(context_isa(environment->context))};
     HELIO_TRY(resolve_pixels(map, given, &work.pixels));
+    if (info == NULL && map_sink_offer(environment, &work.pixels)) {
+        environment->frame++;
+        return HELIO_OK;
+    }
     bool faults = resampler_run(environment->context, map->resampler, &work.pixels, environment->cube);
     helio_bad_pixels bad = {0};
     if (faults || !resampler_sees_all(map->resampler))

@@ -184,6 +184,7 @@ static uint32_t leaf_depth(uint32_t size)
 
 helio_status light_tree_create(const helio_environment *environment, light_tree *tree)
 {
+    environment_settle(environment);
     helio_context *context = environment->context;
     *tree = (light_tree){.context = context,
                          .environment = environment,

@@ -12,6 +12,7 @@ static uint64_t digest_vector(uint64_t digest, vec3 v)
 
 static uint64_t describe_map(const helio_environment *environment)
 {
+    environment_settle(environment);
     size_t size = environment->size;
     uint64_t digest = digest_floats(0, environment->cube, CUBE_FACES * size * size * 3);
     for (int axis = 0; axis < 3; axis++)

@@ -223,6 +223,7 @@ helio_status helio_tables_update(helio_tables *tables)
         return fail(HELIO_ERR_ARGUMENT, "helio_tables_update needs tables");
     if (tables->environment->frame == 0)
         return fail(HELIO_ERR_ARGUMENT, "the environment holds no map yet; call helio_environment_update first");
+    environment_settle(tables->environment);
     if (tables->weighting != HELIO_WEIGHTING_SOLID_ANGLE) {
         for_all_rows(tables, sum_flux_of_row);
         find_fluxes(tables);

@@ -86,10 +86,19 @@ static void add_times(const vulkan_light *light, const frame_slot *slot, uint32_
         info->upload_ms = light_send_milliseconds(light, index);
     info->upload_ms += commands_milliseconds(commands, marks->start, marks->uploaded);
     info->primary_ms += commands_milliseconds(commands, marks->uploaded, marks->traced);
-    info->tables_ms += commands_milliseconds(commands, marks->traced, marks->tables);
+    info->cube_ms += commands_milliseconds(commands, marks->traced, marks->cube);
+    info->tables_ms += commands_milliseconds(commands, marks->cube, marks->tables);
     info->pools_ms += commands_milliseconds(commands, marks->tables, marks->pools);
     info->shade_ms += commands_milliseconds(commands, marks->pools, marks->shaded);
     info->read_back_ms += commands_milliseconds(commands, marks->shaded, marks->back);
+}
+
+/* What came back of the map itself. */
+static void tell_light(const vulkan_light *light, uint32_t index, helio_frame_info *info)
+{
+    if (light->slots[index].is_map)
+        info->bad = map_bad_pixels(&light->map, index);
+    memcpy(info->flux, light_sums(light, index)->flux, sizeof info->flux);
 }
 
 /* Waits for the slot's list and learns what it took and counted. */
@@ -103,6 +112,7 @@ static helio_status finish_slot(struct vulkan_renderer *v, uint32_t index)
     HELIO_TRY(commands_wait(&v->light.slots[index].upload));
     const struct layout_counts *counts = slot->counts_back.mapped;
     add_times(&v->light, slot, index, &slot->info);
+    tell_light(&v->light, index, &slot->info);
     if (slot->counts_points)
         slot->info.points += *(const uint32_t *)slot->lists_back.mapped;
     slot->info.samples = whole_count(counts->samples);
@@ -247,7 +257,12 @@ static void record_step(struct vulkan_renderer *v, frame_slot *slot, const struc
         record_lists(v, &frame->renderer->desc, commands);
     marks->traced = commands_mark(commands);
     if (frame->step.is_first)
+        light_record_resampling(&v->light, commands);
+    marks->cube = commands_mark(commands);
+    if (frame->step.is_first) {
         light_record_tables(&v->light, commands);
+        light_record_report(&v->light, commands);
+    }
     marks->tables = commands_mark(commands);
     if (is_new_pass)
         light_record_pools(&v->light, commands, v->step.address, frame->step.is_first);

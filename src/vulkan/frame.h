@@ -16,7 +16,7 @@ typedef struct shade_shape {
 
 /* Marks of a list of commands. */
 typedef struct step_marks {
-    uint32_t start, uploaded, traced, tables, pools, shaded, back;
+    uint32_t start, uploaded, traced, cube, tables, pools, shaded, back;
 } step_marks;
 
 /* A frame that may still be on its way while the next is begun. */

@@ -31,6 +31,7 @@ static helio_status create_slot(vulkan_light *light, light_slot *slot)
         {&slot->staging, BUFFER_UPLOAD, light_cube_bytes(light), 1, "the map on its way"},
         {&slot->cube, BUFFER_SHARED, light_cube_bytes(light), 1, "the cube"},
         {&slot->state, BUFFER_ON_DEVICE, 1, sizeof light->state, "the state"},
+        {&slot->sums_back, BUFFER_READBACK, 1, sizeof(struct layout_sums), "the sums of the map"},
     };
     HELIO_TRY(light_create_buffers(light, buffers, sizeof buffers / sizeof *buffers));
     HELIO_TRY(commands_create(light->device, true, &slot->upload));
@@ -68,6 +69,13 @@ helio_status light_create(helio_device *device, vulkan_commands *commands, const
     return status;
 }
 
+helio_status light_take_maps(vulkan_light *light, helio_environment *environment)
+{
+    _Static_assert((int)MAP_COPIES == (int)LIGHT_SLOTS, "each slot has one");
+    vulkan_commands *const uploads[] = {&light->slots[0].upload, &light->slots[1].upload};
+    return map_create(light->device, environment, uploads, &light->map);
+}
+
 static void destroy_slot(helio_device *device, light_slot *slot)
 {
     commands_destroy(&slot->upload);
@@ -75,12 +83,14 @@ static void destroy_slot(helio_device *device, light_slot *slot)
     buffer_destroy(device, &slot->staging);
     buffer_destroy(device, &slot->cube);
     buffer_destroy(device, &slot->state);
+    buffer_destroy(device, &slot->sums_back);
 }
 
 void light_destroy(vulkan_light *light)
 {
     if (light->device == NULL)
         return;
+    map_destroy(&light->map);
     vulkan_buffer *const all[] = {&light->solid_angles,
                                   &light->rows,
                                   &light->marginals,
@@ -133,6 +143,8 @@ static void copy_piece(void *data, size_t piece)
 static void stage(vulkan_light *light, uint32_t slot)
 {
     light->slot = slot;
+    light->slots[slot].is_map = false;
+    environment_settle(light->environment);
     context_parallel_for(light->environment->context, (light_cube_bytes(light) + COPY_PIECE - 1) / COPY_PIECE,
                          copy_piece, light);
 }
@@ -147,11 +159,34 @@ helio_status light_send(vulkan_light *light, uint32_t slot)
 {
     light_slot *own = &light->slots[slot];
     HELIO_TRY(commands_begin(&own->upload)); /* when the one before has left the staging */
-    stage(light, slot);
+    const bool is_map = map_is_here(&light->map);
+    if (!is_map)
+        stage(light, slot);
+    light->slot = slot;
+    own->is_map = is_map;
     own->started = commands_mark(&own->upload);
-    commands_copy(&own->upload, &own->staging, &own->cube, light_cube_bytes(light));
+    if (is_map)
+        map_record_send(&light->map, slot);
+    else
+        commands_copy(&own->upload, &own->staging, &own->cube, light_cube_bytes(light));
     own->done = commands_mark(&own->upload);
     return commands_submit_between(&own->upload, VK_NULL_HANDLE, own->uploaded);
+}
+
+void light_record_resampling(vulkan_light *light, vulkan_commands *commands)
+{
+    if (light->slots[light->slot].is_map)
+        map_record_cube(&light->map, commands, light->slot, light_push(light, 0, 0), light->state.size);
+}
+
+void light_record_report(vulkan_light *light, vulkan_commands *commands)
+{
+    commands_copy(commands, &light->sums, &light->slots[light->slot].sums_back, sizeof(struct layout_sums));
+}
+
+const struct layout_sums *light_sums(const vulkan_light *light, uint32_t slot)
+{
+    return light->slots[slot].sums_back.mapped;
 }
 
 VkSemaphore light_sent(const vulkan_light *light)

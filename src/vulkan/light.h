@@ -7,6 +7,7 @@
 
 #include "sampling/pools.h"
 #include "vulkan/commands.h"
+#include "vulkan/map.h"
 #include "vulkan/pipeline.h"
 
 typedef enum light_pass {
@@ -31,7 +32,9 @@ enum { LIGHT_SLOTS = 2 };
 /* What frames have of their own, so that the cube of the next can come while one is worked on. */
 typedef struct light_slot {
     vulkan_buffer staging, cube;
+    bool is_map;         /* what was sent is a map, and the cube is to be made of it */
     vulkan_buffer state; /* with that cube */
+    vulkan_buffer sums_back;
     vulkan_commands upload;
     uint32_t started, done; /* marks of the upload */
     VkSemaphore uploaded;
@@ -43,7 +46,8 @@ typedef struct vulkan_light {
     const helio_environment *environment;
     struct layout_state state; /* as the shaders have it */
     light_slot slots[LIGHT_SLOTS];
-    uint32_t slot; /* of the frame in hand */
+    uint32_t slot;  /* of the frame in hand */
+    vulkan_map map; /* {0} unless maps are taken */
     vulkan_buffer solid_angles, rows, marginals, row_densities, weights, fluxes, sums;
     vulkan_buffer pools;
     /* Of bins of normals; nothing for other strategies. */
@@ -63,11 +67,14 @@ void light_destroy(vulkan_light *light);
 /* Bytes of the cube. */
 uint64_t light_cube_bytes(const vulkan_light *light);
 
-/* Sends the environment's cube to the device, for a frame of this slot. No list that reads the slot may be on its way.
- */
+/* Takes the environment's maps, which will be sent instead of cubes. The light must stay where it is. */
+helio_status light_take_maps(vulkan_light *light, helio_environment *environment);
+
+/* Sends the environment's map or cube to the device, for a frame of this slot. No list that reads the slot may be on
+ * its way. */
 helio_status light_send(vulkan_light *light, uint32_t slot);
 
-/* The same as part of a list that makes the tables as well, without a barrier behind. */
+/* The same, of the cube, as part of a list that makes the tables as well, without a barrier behind. */
 void light_record_cube(vulkan_light *light, vulkan_commands *commands, uint32_t slot);
 
 /* When the cube has come: what the list that makes the tables is to be submitted after. */
@@ -75,6 +82,13 @@ VkSemaphore light_sent(const vulkan_light *light);
 
 /* How long that took, ms, once it is over. */
 double light_send_milliseconds(const vulkan_light *light, uint32_t slot);
+
+/* Records the making of the cube of the slot in hand, if a map was sent, with a barrier behind. */
+void light_record_resampling(vulkan_light *light, vulkan_commands *commands);
+
+/* Records that what is known of the map as a whole comes back; and what came, of a slot whose frame is over. */
+void light_record_report(vulkan_light *light, vulkan_commands *commands);
+const struct layout_sums *light_sums(const vulkan_light *light, uint32_t slot);
 
 /* Records the making of the tables of the slot in hand, with a barrier behind. */
 void light_record_tables(vulkan_light *light, vulkan_commands *commands);

@@ -149,6 +149,8 @@ static helio_status create_parts(struct vulkan_renderer *v, const helio_renderer
         HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, 2, sizeof(uint32_t), "the counts", &slot->lists_back));
     }
     HELIO_TRY(light_create(v->device, &v->slots[0].commands, renderer->pools, &v->light));
+    if (!device_is_software(v->device)) /* which is slower at cubes than our own loops on the same processor */
+        HELIO_TRY(light_take_maps(&v->light, desc->environment));
     HELIO_TRY(points_create(v->device, desc->scene, casts_rays(renderer), desc->width, desc->height, &v->points));
     HELIO_TRY(create_buffers(v, (uint64_t)desc->width * desc->height));
     HELIO_TRY(create_tree(v, renderer));
