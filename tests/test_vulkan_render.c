@@ -427,7 +427,8 @@ static size_t resident_bytes(void)
     return resident * (size_t)sysconf(_SC_PAGESIZE);
 }
 
-/* Neither do drivers, over thousands of frames. */
+/* Neither do drivers, over thousands of frames: in 10,000 the validation layer grows by 2 MiB, and half a KiB a frame
+ * would be 5. */
 static void memory_stays_flat(void **state)
 {
     const helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_FACE, .spp = 1, .pool_length = 64};
@@ -444,7 +445,7 @@ static void memory_stays_flat(void **state)
     const size_t after = resident_bytes();
     print_message("%zu KiB before, %zu after\n", before >> 10, after >> 10);
 #ifndef __SANITIZE_ADDRESS__ /* which keeps what was released */
-    assert_true(after < before + (2u << 20));
+    assert_true(after < before + (4u << 20));
 #endif
     destroy_stage(&s);
 }
