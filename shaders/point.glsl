@@ -55,7 +55,7 @@ float narrowness(brdf b)
 float share_of_need(shading_point p, scene_material m)
 {
     const brdf b = prepare_brdf(m, p.normal, lift_view(p.normal, p.view));
-    const float need = m.kind != LAYOUT_DIFFUSE ? b.specular_share * narrowness(b) : 0.0;
+    const float need = m.kind != LAYOUT_DIFFUSE ? b.specular_share * min(narrowness(b), 0.5) : 0.0;
     const float for_surface = need * STEP.brdf_share, for_light = (1.0 - need) * (1.0 - STEP.brdf_share);
     return for_surface > 0.0 ? for_surface / (for_surface + for_light) : 0.0;
 }

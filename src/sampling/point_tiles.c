@@ -4,6 +4,9 @@
 /* The lobe's width at which light and BRDF get equally many samples is this part of a tile's radius. */
 static const float EVEN_WIDTH = 1.25f;
 
+/* However sharp the lobe: where it meets a sun, light samples are what keeps the error low. */
+static const float GREATEST_NEED = 0.5f;
+
 /* Angle from the mirror direction at which the lobe has fallen to a quarter. */
 static float lobe_width(const brdf *b)
 {
@@ -18,7 +21,7 @@ static float narrowness(const tiles *t, const brdf *b)
 
 float tile_lobe_need(const tiles *t, const brdf *b)
 {
-    return b->specular_share * narrowness(t, b);
+    return b->specular_share * fminf(narrowness(t, b), GREATEST_NEED);
 }
 
 static float luminance_of(vec3 colour)

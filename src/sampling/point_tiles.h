@@ -36,9 +36,9 @@ typedef struct point_tiles {
     alignas(64) uint32_t weights[TILES_MOST]; /* [group_count][TILE_GROUP] */
 } point_tiles;
 
-/* Part of a point's samples that are best drawn from the specular lobe, at an even split: nearly all for a mirror,
- * whose lobe is lost in a tile, few where the lobe is wider than tiles are, and in proportion to what it reflects of
- * the light, b->specular_share. */
+/* Part of a point's samples that are best drawn from the specular lobe, at an even split: half for a mirror, whose lobe
+ * is lost in a tile, few where the lobe is wider than tiles are, and in proportion to what it reflects of the light,
+ * b->specular_share. */
 float tile_lobe_need(const tiles *t, const brdf *b);
 
 /* b: with brdf_prepare_share() done for the material's own share. */
