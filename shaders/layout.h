@@ -196,6 +196,7 @@ struct layout_state {
     ADDRESS(row_sums, tile_totals); /* [tiles] */
     ADDRESS(uints, tile_sums);     /* [tiles][tile_stride] */
     ADDRESS(floats, segment_densities); /* [6][R][T] */
+    ADDRESS(floats, tile_spreads);      /* [tiles] */
     ADDRESS(vectors, bins);        /* [bins]: direction to the centre, reach */
     ADDRESS(uints, bin_sums);      /* [bins][tiles + 1] */
     ADDRESS(floats, bin_shares);   /* [bins] */
@@ -276,7 +277,7 @@ struct layout_push {
 #ifndef VULKAN
 _Static_assert(sizeof(struct layout_sums) == 176, "as in the shaders");
 _Static_assert(sizeof(struct layout_material) == 48 && sizeof(struct layout_point) == 48, "as in the shaders");
-_Static_assert(sizeof(struct layout_state) == 23 * 8 + 18 * 4, "as in the shaders");
+_Static_assert(sizeof(struct layout_state) == 24 * 8 + 18 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_step) == 12 * 8 + 56 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_map) == 6 * 8 + 6 * 4 + LAYOUT_VIEWS * 20, "as in the shaders");
 _Static_assert(sizeof(struct layout_push) == 32, "as in the shaders");

@@ -43,21 +43,32 @@ vec3 turned(vec3 v)
 
 // ---- shares and expected counts ----
 
-// 0 for a lobe as wide as the sky, 1 for a mirror: see point_tiles.c.
-float narrowness(brdf b)
+// What this is times the spread of a tile: see tile_lobe in point_tiles.h.
+float to_surface(brdf b)
 {
-    const float width = is_ggx(b.kind) ? 2.0 * sqrt(b.shape) : 1.665 / sqrt(max(b.shape, 1.0));
-    return STATE.tile_radius / (STATE.tile_radius + width / 1.25);
+    return 1.25 / (is_ggx(b.kind) ? 2.0 * sqrt(b.shape) : 1.665 / sqrt(max(b.shape, 1.0)));
+}
+
+// See tile_lobe_need().
+float need_of_lobe(brdf b)
+{
+    const float x = STATE.tile_radius * to_surface(b);
+    return b.specular_share * (x / (1.0 + x));
+}
+
+// The share given is what `need` is at an even split.
+float share_of_need(float need)
+{
+    const float for_surface = need * STEP.brdf_share, for_light = (1.0 - need) * (1.0 - STEP.brdf_share);
+    return for_surface > 0.0 ? for_surface / (for_surface + for_light) : 0.0;
 }
 
 // Bins know light and cosine, and tiles light and BRDF, so that BRDF samples have only the lobe to look after, the more
-// the narrower it is. The share given is what that is at an even split.
-float share_of_need(shading_point p, scene_material m)
+// the narrower it is. How many they are, shade_tiles.comp finds; here it matters whether there are any.
+float share_of_lobe(shading_point p, scene_material m)
 {
     const brdf b = prepare_brdf(m, p.normal, lift_view(p.normal, p.view));
-    const float need = m.kind != LAYOUT_DIFFUSE ? b.specular_share * min(narrowness(b), 0.5) : 0.0;
-    const float for_surface = need * STEP.brdf_share, for_light = (1.0 - need) * (1.0 - STEP.brdf_share);
-    return for_surface > 0.0 ? for_surface / (for_surface + for_light) : 0.0;
+    return m.kind != LAYOUT_DIFFUSE ? share_of_need(need_of_lobe(b)) : 0.0;
 }
 
 // Is the light so even that it does not pay to aim at it?
@@ -73,7 +84,7 @@ float surface_share(shading_point p, scene_material m)
         return 1.0;
     if (SURFACE == LAYOUT_SURFACE_NONE)
         return 0.0;
-    return LIGHT == LAYOUT_LIGHT_BINS ? share_of_need(p, m) : STEP.brdf_share;
+    return LIGHT == LAYOUT_LIGHT_BINS ? share_of_lobe(p, m) : STEP.brdf_share;
 }
 
 // How much, at most, a face can light a surface with this normal: strategy_beta().

@@ -33,13 +33,13 @@ shared float parts[4u * gl_WorkGroupSize.x];
 
 // See tile_lobe in point_tiles.h.
 struct tile_lobe {
-    float diffuse, specular, sharpness, narrowness, alpha;
+    float diffuse, specular, sharpness, narrowness, alpha, to_surface;
 };
 
 tile_lobe prepare_lobe(brdf b)
 {
-    const float rest = 1.0 - narrowness(b), edge2 = STATE.tile_edge * STATE.tile_edge;
-    tile_lobe lobe = tile_lobe(luminance(b.colours[0]), luminance(b.colours[1]), 0.0, 0.0, 0.0);
+    const float edge2 = STATE.tile_edge * STATE.tile_edge;
+    tile_lobe lobe = tile_lobe(luminance(b.colours[0]), luminance(b.colours[1]), 0.0, 0.0, 0.0, to_surface(b));
     if (is_ggx(b.kind)) {
         const float widened = b.shape + edge2;
         lobe.alpha = sqrt(b.shape);
@@ -51,21 +51,41 @@ tile_lobe prepare_lobe(brdf b)
         lobe.sharpness = 1.44269504 * widened;
         lobe.specular *= (widened + 2.0) / (b.shape + 2.0);
     }
-    lobe.specular *= rest;
     return lobe;
 }
 
-// BRDF x cosine for the centre of a tile.
-float lobe_value(brdf b, tile_lobe lobe, vec3 direction)
+// BRDF x cosine for the centre of a tile: of what BRDF samples leave, and of all. x: what they look after is x / (1 + x)
+// of the specular lobe.
+vec2 lobe_at(brdf b, tile_lobe lobe, vec3 direction, float x)
 {
     const float cosine = dot(b.normal, direction), edge = STATE.tile_edge, risen = max(cosine + edge, 0.0);
     const float soft = cosine < edge ? risen * risen / (4.0 * edge) : cosine, along = dot(b.view, direction);
-    if (!is_ggx(b.kind))
-        return soft * (lobe.diffuse + lobe.specular * exp2_fast(lobe.sharpness * (along - 1.0)));
+    if (!is_ggx(b.kind)) {
+        const float all = lobe.specular * exp2_fast(lobe.sharpness * (along - 1.0));
+        return soft * (lobe.diffuse + vec2(all / (1.0 + x), all));
+    }
     const float height = b.view_cosine + cosine, twice = 2.0 + 2.0 * along;
     const float safe = max(twice - lobe.narrowness * (height * height), 1e-6);
     const float masking = soft * (2.0 - lobe.alpha) + lobe.alpha;
-    return soft * (lobe.diffuse + lobe.specular * (twice * twice) / (safe * safe * masking));
+    const float light = lobe.specular * (twice * twice) / (safe * safe * masking * (1.0 + x));
+    return soft * (lobe.diffuse + vec2(light, light * (1.0 + x)));
+}
+
+// Each of four threads adds up one of the four numbers of all.
+vec4 sum_of_group(vec4 own)
+{
+    const uint thread = gl_LocalInvocationID.x, threads = gl_WorkGroupSize.x;
+    for (uint c = 0u; c < 4u; c++)
+        parts[c * threads + thread] = own[c];
+    barrier();
+    float sum = 0.0;
+    for (uint i = 0u; thread < 4u && i < threads; i++)
+        sum += parts[thread * threads + i];
+    barrier();
+    if (thread < 4u)
+        parts[thread] = sum;
+    barrier();
+    return vec4(parts[0], parts[1], parts[2], parts[3]);
 }
 
 // Returns how many groups there are, each thread having looked at some that follow each other.
@@ -95,27 +115,33 @@ uint position_of(uint i)
     return groups[i / LAYOUT_TILE_GROUP] * LAYOUT_TILE_GROUP + i % LAYOUT_TILE_GROUP;
 }
 
-float weigh(brdf b, tile_lobe lobe, uint position)
+vec2 weigh(brdf b, tile_lobe lobe, uint position)
 {
     if (position >= STATE.tile_count)
-        return 0.0;
+        return vec2(0.0);
     const vec4 tile = STATE.tiles.at[position];
-    return tile.w > 0.0 ? tile.w * lobe_value(b, lobe, tile.xyz) : 0.0;
+    const float x = lobe.to_surface * STATE.tile_spreads.at[position];
+    return tile.w > 0.0 ? tile.w * lobe_at(b, lobe, tile.xyz, x) : vec2(0.0);
 }
 
-// Fills in the sums of `count` tiles and returns that of all. Threads take pieces of odd lengths, so that neighbours reach
+// Fills in the sums of `count` tiles and returns that of all. left: part of the light that is left to BRDF samples. Threads take pieces of odd lengths, so that neighbours reach
 // for different banks of memory.
-uint weigh_tiles(brdf b, uint count)
+uint weigh_tiles(brdf b, uint count, out float left)
 {
     const tile_lobe lobe = prepare_lobe(b);
     const uint each = (count + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x | 1u;
     const uint begin = min(each * gl_LocalInvocationID.x, count), end = min(begin + each, count);
     uint largest = 0u, own = 0u, total;
+    vec2 light = vec2(0.0);
     for (uint i = gl_LocalInvocationID.x; i < count; i += gl_WorkGroupSize.x) {
-        const uint bits = floatBitsToUint(weigh(b, lobe, position_of(i)));
+        const vec2 weight = weigh(b, lobe, position_of(i));
+        const uint bits = floatBitsToUint(weight.x);
         sums[i] = bits;
         largest = max(largest, bits);
+        light += weight;
     }
+    light = sum_of_group(vec4(light, 0.0, 0.0)).xy;
+    left = light.y > light.x ? 1.0 - light.x / light.y : 0.0;
     const int exponent = fixed_point_exponent(greatest_in_group(largest), summand_bits(STATE.tile_count));
     const float factor = power_of_two(exponent);
     for (uint i = begin; i < end; i++)
@@ -191,21 +217,14 @@ vec4 light_point(prepared_point p, uint count, uint total)
     return sum;
 }
 
-// Each of four threads adds up one of the four numbers of all.
-vec4 sum_of_group(vec4 own)
+// See begin_tiles() in estimate.c.
+void divide_samples(float left, inout prepared_point p)
 {
-    const uint thread = gl_LocalInvocationID.x, threads = gl_WorkGroupSize.x;
-    for (uint c = 0u; c < 4u; c++)
-        parts[c * threads + thread] = own[c];
-    barrier();
-    float sum = 0.0;
-    for (uint i = 0u; thread < 4u && i < threads; i++)
-        sum += parts[thread * threads + i];
-    barrier();
-    if (thread < 4u)
-        parts[thread] = sum;
-    barrier();
-    return vec4(parts[0], parts[1], parts[2], parts[3]);
+    const float samples = float(STEP.samples), need = sqrt(left * need_of_lobe(p.surface));
+    p.surface_expected = samples * share_of_need(need);
+    p.expected[0] = samples - p.surface_expected;
+    p.end[0] = min(uint(p.expected[0] + unit_float(hash_combine(p.seed, LAYOUT_STREAM_ROUNDING))), STEP.samples);
+    p.surface_count = STEP.samples - p.end[0];
 }
 
 void main()
@@ -217,7 +236,9 @@ void main()
     prepared_point p = prepare(given);
     if (!weighs_tiles(p))
         return;
-    const uint count = choose_groups(p.surface.normal) * LAYOUT_TILE_GROUP, total = weigh_tiles(p.surface, count);
+    float left;
+    const uint count = choose_groups(p.surface.normal) * LAYOUT_TILE_GROUP, total = weigh_tiles(p.surface, count, left);
+    divide_samples(left, p);
     p.surface.specular_share = 1.0; // of what the tiles leave over
     const vec4 sum = sum_of_group(total != 0u ? light_point(p, count, total) : vec4(0.0));
     if (gl_LocalInvocationID.x != 0u)

@@ -59,6 +59,18 @@ void find_densities(tile_area area, int exponent, uint total, uint column)
     }
 }
 
+// See find_spread() in tiles.c.
+float find_spread(tile_area area, int exponent, uint total)
+{
+    double squares = 0.0LF;
+    for (uint i = 0u; i < area.count; i++) {
+        const double part = double(rescale(segment(area, i), exponent));
+        squares += part * part;
+    }
+    const double part = squares > 0.0LF ? double(total) * double(total) / (double(area.count) * squares) : 1.0LF;
+    return STATE.tile_radius * float(part);
+}
+
 void main()
 {
     begin_with_state();
@@ -73,4 +85,5 @@ void main()
         return;
     STATE.tile_sums.at[to + area.count] = total;
     STATE.tile_totals.at[position] = layout_row_sum(total, exponent);
+    STATE.tile_spreads.at[position] = find_spread(area, exponent, total);
 }

@@ -53,6 +53,7 @@ static void compare_bins(vulkan_world *w)
     const tiles *t = bins->tiles;
     const size_t sums = bins->count * ((size_t)t->count + 1);
     world_compare_bits(w, &w->light.tile_totals, t->totals, t->count * sizeof *t->totals, "sums of tiles");
+    world_compare_bits(w, &w->light.tile_spreads, t->spread, t->count * sizeof *t->spread, "spreads of tiles");
     world_compare_bits(w, &w->light.bin_sums, bins->sums, sums * sizeof *bins->sums, "sums of bins");
     world_compare_bits(w, &w->light.list_starts, bins->list_starts, (t->count + 1) * sizeof *bins->list_starts,
                        "starts of lists");

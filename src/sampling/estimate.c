@@ -51,7 +51,8 @@ helio_status estimate_resolve(const helio_pools *pools, const helio_estimate_des
 /* ---- points side by side ---- */
 
 /* Pools of bins hold the product of light and cosine, and tiles that of light and BRDF, so that BRDF samples have only
- * the specular lobe to look after, the more the narrower it is. */
+ * the specular lobe to look after, the more the narrower it is. How many they are begin_tiles() finds; here it matters
+ * whether there are any. */
 static float specular_need(const tiles *t, const helio_shading_point *point)
 {
     if (point->material.kind == HELIO_MATERIAL_DIFFUSE)
@@ -136,7 +137,7 @@ static void begin_surface_samples(gathering *g, uint32_t seed)
 }
 
 /* A point that shines, of a strategy with pools of bins and BRDF samples, reads no pool but weighs tiles. */
-static void begin_tiles(gathering *g, uint32_t seed)
+static void begin_tiles(gathering *g, const helio_estimate_desc *desc, uint32_t seed, float rounding)
 {
     const tiles *t = g->pools->bins->tiles;
     brdf surface = g->surface;
@@ -145,13 +146,20 @@ static void begin_tiles(gathering *g, uint32_t seed)
     tile_lobe_prepare(&lobe, t, &surface);
     kernels_of(context_isa(g->environment->context))->weigh_point(t, &lobe, &g->tiles);
     g->tile_random = hash_combine(seed, STREAM_WINDOW);
+    g->counts = (helio_counts){0};
     if (g->tiles.total == 0) /* as for a bin that is lit, but only below the horizon of this normal */
-        g->counts = (helio_counts){0};
+        return;
+    const float need = point_tiles_need(&g->tiles, tile_lobe_need(t, &surface)), samples = (float)desc->samples;
+    g->counts.expected[TECHNIQUE_SURFACE] = samples * share_of_need(need, desc->brdf_share);
+    g->counts.expected[0] = samples - g->counts.expected[TECHNIQUE_SURFACE];
+    const uint32_t light = (uint32_t)(g->counts.expected[0] + rounding);
+    g->counts.realised[0] = light < desc->samples ? light : desc->samples;
+    g->counts.realised[TECHNIQUE_SURFACE] = desc->samples - g->counts.realised[0];
 }
 
 /* For point i of a block that is prepared. */
-static void begin(gathering *g, const helio_pools *pools, const helio_shading_point *point, const point_block *block,
-                  uint32_t i)
+static void begin(gathering *g, const helio_pools *pools, const helio_shading_point *point,
+                  const helio_estimate_desc *desc, const point_block *block, uint32_t i)
 {
     g->pools = pools;
     g->environment = pools->tables->environment;
@@ -166,7 +174,7 @@ static void begin(gathering *g, const helio_pools *pools, const helio_shading_po
     g->pool = block->pools[0][i];
     g->has_tiles = pools->bins != NULL && !pools->is_even && block->surface_share[i] > 0.0f;
     if (g->has_tiles)
-        begin_tiles(g, point->seed);
+        begin_tiles(g, desc, point->seed, block->rounding[i]);
     if (g->counts.expected[TECHNIQUE_SURFACE] > 0.0f)
         begin_surface_samples(g, point->seed);
 }
@@ -336,7 +344,7 @@ void estimate_points(const helio_pools *pools, uint32_t count, const helio_shadi
     for (uint32_t i = 0; i < count; i++) {
         if (desc->visibility == NULL && reads_pools_alone(&block, i))
             continue;
-        begin(&g, pools, &points[i], &block, i);
+        begin(&g, pools, &points[i], desc, &block, i);
         estimate_by_blocks(&g, kernels, &points[i], desc, &results[i]);
     }
 }
@@ -437,7 +445,7 @@ static helio_status begin_checked(const helio_pools *pools, const helio_shading_
         return fail(HELIO_ERR_ARGUMENT, "an estimate needs a shading point");
     HELIO_TRY(resolve_points(1, given_point, &point));
     prepare_points(pools, 1, &point, &desc, &block);
-    begin(g, pools, &point, &block, 0);
+    begin(g, pools, &point, &desc, &block, 0);
     return HELIO_OK;
 }
 

@@ -4,9 +4,6 @@
 /* The lobe's width at which light and BRDF get equally many samples is this part of a tile's radius. */
 static const float EVEN_WIDTH = 1.25f;
 
-/* However sharp the lobe: where it meets a sun, light samples are what keeps the error low. */
-static const float GREATEST_NEED = 0.5f;
-
 /* Angle from the mirror direction at which the lobe has fallen to a quarter. */
 static float lobe_width(const brdf *b)
 {
@@ -21,7 +18,7 @@ static float narrowness(const tiles *t, const brdf *b)
 
 float tile_lobe_need(const tiles *t, const brdf *b)
 {
-    return b->specular_share * fminf(narrowness(t, b), GREATEST_NEED);
+    return b->specular_share * narrowness(t, b);
 }
 
 static float luminance_of(vec3 colour)
@@ -51,14 +48,13 @@ static void prepare_ggx(tile_lobe *lobe, const tiles *t, const brdf *b)
 
 void tile_lobe_prepare(tile_lobe *lobe, const tiles *t, const brdf *b)
 {
-    const float rest = 1.0f - narrowness(t, b);
     *lobe = (tile_lobe){.kind = b->kind, .normal = b->normal, .edge = t->edge, .view_cosine = b->view_cosine};
     lobe->slope = 0.25f / t->edge;
+    lobe->to_surface = EVEN_WIDTH / lobe_width(b);
     lobe->diffuse = luminance_of(b->colours[0]);
     lobe->specular = luminance_of(b->colours[1]);
     if (b->kind == HELIO_MATERIAL_PHONG)
         prepare_phong(lobe, t, b);
     else
         prepare_ggx(lobe, t, b);
-    lobe->specular *= rest;
 }

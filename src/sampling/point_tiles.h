@@ -19,7 +19,8 @@ typedef struct tile_lobe {
     float edge;       /* sine of the radius of a tile: those down to -edge below the horizon reach above it */
     float slope;      /* 1 / (4 edge) */
     float diffuse;    /* luminance of the diffuse lobe, 1/sr */
-    float specular;   /* ... and of the specular one, as far as BRDF samples do not look after it */
+    float specular;   /* ... and of the specular one */
+    float to_surface; /* BRDF samples look after x / (1 + x) of the specular light of a tile, x this times its spread */
     float sharpness;  /* PHONG: the lobe is 2^(-sharpness (1 - cosine)) */
     float narrowness; /* GGX: 1 - alpha^2 */
     float alpha;      /* GGX, as it is: for the masking */
@@ -29,6 +30,7 @@ typedef struct tile_lobe {
 typedef struct point_tiles {
     uint32_t total; /* of all weights; 0 if no light is above the horizon */
     float share;    /* 1 / total, or 0 */
+    float left;     /* part of the light that is left to BRDF samples, 0 ... 1 */
     uint32_t group_count;
     uint8_t groups[TILE_GROUPS];              /* [group_count]: those that reach above the horizon and give light */
     uint8_t places[TILE_GROUPS];              /* [groups of the tiles]: where in these arrays, or TILE_GROUPS */
@@ -36,10 +38,16 @@ typedef struct point_tiles {
     alignas(64) uint32_t weights[TILES_MOST]; /* [group_count][TILE_GROUP] */
 } point_tiles;
 
-/* Part of a point's samples that are best drawn from the specular lobe, at an even split: half for a mirror, whose lobe
- * is lost in a tile, few where the lobe is wider than tiles are, and in proportion to what it reflects of the light,
- * b->specular_share. */
+/* Part of a point's samples that are best drawn from the specular lobe where light is even, at an even split: nearly
+ * all for a mirror, whose lobe is lost in a tile, few where the lobe is wider than tiles are, and in proportion to what
+ * it reflects of the light, b->specular_share. */
 float tile_lobe_need(const tiles *t, const brdf *b);
+
+/* The same as the light is: between that and what is left when the tiles are weighed. */
+static inline float point_tiles_need(const point_tiles *p, float need_of_lobe)
+{
+    return sqrtf(p->left * need_of_lobe);
+}
 
 /* b: with brdf_prepare_share() done for the material's own share. */
 void tile_lobe_prepare(tile_lobe *lobe, const tiles *t, const brdf *b);

@@ -33,36 +33,48 @@ static inline float soft_cosine(float cosine, float edge, float slope)
     return cosine < edge ? risen * risen * slope : cosine;
 }
 
-/* BRDF x cosine for a direction. */
-static inline __attribute__((always_inline)) float lobe_value(helio_material_kind kind, const tile_lobe *lobe,
-                                                              vec3 direction)
+/* BRDF x cosine: of what BRDF samples leave, and of all. */
+typedef struct lobe_values {
+    float light, all;
+} lobe_values;
+
+/* x: what BRDF samples look after is x / (1 + x) of the specular lobe. */
+static inline __attribute__((always_inline)) lobe_values lobe_at(helio_material_kind kind, const tile_lobe *lobe,
+                                                                 vec3 direction, float x)
 {
     const float cosine = dot(lobe->normal, direction), soft = soft_cosine(cosine, lobe->edge, lobe->slope);
     const float along = dot(lobe->axis, direction);
-    if (kind == HELIO_MATERIAL_PHONG)
-        return soft * (lobe->diffuse + lobe->specular * exp2_fast(lobe->sharpness * (along - 1.0f)));
+    if (kind == HELIO_MATERIAL_PHONG) {
+        const float all = lobe->specular * exp2_fast(lobe->sharpness * (along - 1.0f));
+        return (lobe_values){soft * (lobe->diffuse + all / (1.0f + x)), soft * (lobe->diffuse + all)};
+    }
     /* D by (n.h)^2 = (n.v + n.l)^2 / (2 + 2 v.l), without the square root of h; times Smith's masking of the light,
      * nearly cosine / (cosine (2 - alpha) + alpha). */
     const float sum = lobe->view_cosine + cosine, twice = 2.0f + 2.0f * along;
     const float falling = twice - lobe->narrowness * (sum * sum);
     const float masking = soft * (2.0f - lobe->alpha) + lobe->alpha;
     const float safe = falling > 1e-6f ? falling : 1e-6f;
-    return soft * (lobe->diffuse + lobe->specular * (twice * twice) / (safe * safe * masking));
+    const float light = lobe->specular * (twice * twice) / (safe * safe * masking * (1.0f + x));
+    return (lobe_values){soft * (lobe->diffuse + light), soft * (lobe->diffuse + light * (1.0f + x))};
 }
 
-/* The weights of the chosen groups' tiles. */
+/* The weights of the chosen groups' tiles, and what they were if BRDF samples looked after nothing. */
 static inline __attribute__((always_inline)) void weigh_groups(helio_material_kind kind, const tiles *t,
                                                                const tile_lobe *given, const point_tiles *p,
-                                                               float *restrict weights)
+                                                               float *restrict weights, float *restrict wholes)
 {
     const tile_lobe lobe = *given;
     for (uint32_t k = 0; k < p->group_count; k++) {
         const uint32_t first = (uint32_t)p->groups[k] * TILE_GROUP;
         const float *x = t->x + first, *y = t->y + first, *z = t->z + first, *light = t->light + first;
-        float *to = weights + (size_t)k * TILE_GROUP;
+        const float *spread = t->spread + first;
+        float *to = weights + (size_t)k * TILE_GROUP, *whole = wholes + (size_t)k * TILE_GROUP;
 #pragma omp simd
-        for (uint32_t i = 0; i < TILE_GROUP; i++)
-            to[i] = light[i] * lobe_value(kind, &lobe, (vec3){x[i], y[i], z[i]});
+        for (uint32_t i = 0; i < TILE_GROUP; i++) {
+            const lobe_values values = lobe_at(kind, &lobe, (vec3){x[i], y[i], z[i]}, lobe.to_surface * spread[i]);
+            to[i] = light[i] * values.light;
+            whole[i] = light[i] * values.all;
+        }
     }
 }
 
@@ -78,24 +90,42 @@ static float largest_of(const float *weights, uint32_t count)
     return float_of_bits(largest_bits);
 }
 
-void KERNEL(weigh_point)(const tiles *t, const tile_lobe *lobe, point_tiles *p)
+/* A sum of weights that has the same bits with every instruction set: of integers, in their order. */
+static double exact_sum(const float *weights, uint32_t count, uint32_t tile_count, uint32_t *integers, uint32_t *sum)
 {
-    alignas(64) float weights[TILES_MOST];
-    choose_groups(t, lobe->normal, p);
-    if (lobe->kind == HELIO_MATERIAL_PHONG)
-        weigh_groups(HELIO_MATERIAL_PHONG, t, lobe, p, weights);
-    else
-        weigh_groups(HELIO_MATERIAL_GGX, t, lobe, p, weights);
-    const uint32_t count = p->group_count * TILE_GROUP;
-    int exponent = fixed_point_exponent(largest_of(weights, count), tables_summand_bits(t->count));
-    fixed_point_quantise(weights, count, ldexpf(1.0f, exponent), p->weights);
+    const int exponent = fixed_point_exponent(largest_of(weights, count), tables_summand_bits(tile_count));
+    fixed_point_quantise(weights, count, ldexpf(1.0f, exponent), integers);
+    *sum = fixed_point_total(integers, count, 0);
+    return ldexp((double)*sum, -exponent);
+}
+
+static void sum_groups(point_tiles *p)
+{
     uint32_t sum = 0;
     for (uint32_t k = 0; k < p->group_count; k++) {
         p->sums[k] = sum;
         sum = fixed_point_total(p->weights + (size_t)k * TILE_GROUP, TILE_GROUP, sum);
     }
-    p->sums[p->group_count] = p->total = sum;
-    p->share = sum != 0 ? 1.0f / (float)sum : 0.0f;
+    p->sums[p->group_count] = sum;
+}
+
+void KERNEL(weigh_point)(const tiles *t, const tile_lobe *lobe, point_tiles *p)
+{
+    alignas(64) float weights[TILES_MOST];
+    alignas(64) float wholes[TILES_MOST];
+    alignas(64) uint32_t integers[TILES_MOST];
+    uint32_t unused;
+    choose_groups(t, lobe->normal, p);
+    if (lobe->kind == HELIO_MATERIAL_PHONG)
+        weigh_groups(HELIO_MATERIAL_PHONG, t, lobe, p, weights, wholes);
+    else
+        weigh_groups(HELIO_MATERIAL_GGX, t, lobe, p, weights, wholes);
+    const uint32_t count = p->group_count * TILE_GROUP;
+    const double light = exact_sum(weights, count, t->count, p->weights, &p->total);
+    const double all = exact_sum(wholes, count, t->count, integers, &unused);
+    p->left = all > light ? (float)(1.0 - light / all) : 0.0f;
+    p->share = p->total != 0 ? 1.0f / (float)p->total : 0.0f;
+    sum_groups(p);
 }
 
 /* ---- samples ---- */

@@ -170,6 +170,16 @@ static void find_segment_densities(tiles *t, const row_sum *segments, uint32_t r
     }
 }
 
+/* By its rows alone: (sum)^2 / (rows x sum of squares) is the part of them that even light would need. */
+static float find_spread(const tiles *t, const uint32_t *sums, uint32_t rows)
+{
+    double squares = 0.0;
+    for (uint32_t i = 0; i < rows; i++)
+        squares += (double)(sums[i + 1] - sums[i]) * (double)(sums[i + 1] - sums[i]);
+    const double total = (double)sums[rows], part = squares > 0.0 ? total * total / ((double)rows * squares) : 1.0;
+    return t->radius * (float)part;
+}
+
 static void sum_tile(tiles *t, const helio_tables *tables, uint32_t position)
 {
     row_sum segments[CUBE_MAX_SIZE / TILES_PER_EDGE] = {{0}};
@@ -183,6 +193,7 @@ static void sum_tile(tiles *t, const helio_tables *tables, uint32_t position)
         segments[i].exponent = tables->row_sums[first + i].exponent;
     }
     t->totals[position] = tables_sum_rows(segments, rows, sums);
+    t->spread[position] = find_spread(t, sums, rows);
     find_segment_densities(t, segments, rows, sums, t->segment_densities + first * t->per_edge + column);
 }
 

@@ -28,6 +28,7 @@ static helio_status create_buffers(vulkan_light *light)
         {&light->tile_totals, BUFFER_ON_DEVICE, t->count, sizeof(struct layout_row_sum), "the sums of tiles"},
         {&light->tile_sums, BUFFER_ON_DEVICE, (uint64_t)t->count * t->stride, sizeof(uint32_t), "the rows of tiles"},
         {&light->segment_densities, BUFFER_ON_DEVICE, segments, sizeof(float), "the densities of tiles"},
+        {&light->tile_spreads, BUFFER_ON_DEVICE, t->count, sizeof(float), "the spreads of tiles"},
         {&light->groups, BUFFER_ON_DEVICE, t->group_count, 4 * sizeof(float), "the groups of tiles"},
         {&light->bins, BUFFER_ON_DEVICE, bins->count, 4 * sizeof(float), "the bins"},
         {&light->bin_sums, BUFFER_ON_DEVICE, (uint64_t)bins->count * (t->count + 1), sizeof(uint32_t),
@@ -52,6 +53,7 @@ static void tell(vulkan_light *light)
     state->tile_totals = light->tile_totals.address;
     state->tile_sums = light->tile_sums.address;
     state->segment_densities = light->segment_densities.address;
+    state->tile_spreads = light->tile_spreads.address;
     state->bins = light->bins.address;
     state->bin_sums = light->bin_sums.address;
     state->bin_shares = light->bin_shares.address;

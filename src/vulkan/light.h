@@ -51,7 +51,7 @@ typedef struct vulkan_light {
     vulkan_buffer solid_angles, rows, marginals, row_densities, weights, fluxes, sums;
     vulkan_buffer pools;
     /* Of bins of normals; nothing for other strategies. */
-    vulkan_buffer tile_grid, tile_positions, tiles, tile_totals, tile_sums, segment_densities;
+    vulkan_buffer tile_grid, tile_positions, tiles, tile_totals, tile_sums, segment_densities, tile_spreads;
     vulkan_buffer groups;
     vulkan_buffer moments; /* where the strategy may be left */
     vulkan_buffer bins, bin_sums, bin_shares, greatest, list_starts, listed;
