@@ -46,7 +46,7 @@ static void judge_face(void *data, size_t face)
     const tiles *t = work->tiles;
     const double angle = 4.0 * PI / CUBE_FACES, mean = work->tables->flux[face] / angle;
     const double most = GREATEST_VARIANCE * mean * mean * angle;
-    tile_moments above[TILES_PER_EDGE];
+    tile_moments above[TILES_PER_EDGE] = {{0}};
     double sum = 0.0;
     for (uint32_t row = 0; row < t->per_edge && sum <= most; row++)
         for (uint32_t column = 0; column < t->per_edge && sum <= most; column++) {

@@ -10,7 +10,7 @@
 /* Groups of tiles that are not wholly below the horizon, nor black. */
 static void choose_groups(const tiles *t, vec3 normal, point_tiles *p)
 {
-    int32_t is_above[TILE_GROUPS];
+    int32_t is_above[TILE_GROUPS] = {0};
 #pragma omp simd
     for (uint32_t i = 0; i < t->group_count; i++) {
         float cosine = normal.x * t->group_x[i] + normal.y * t->group_y[i] + normal.z * t->group_z[i];

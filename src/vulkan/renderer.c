@@ -34,7 +34,7 @@ static bool read_shape(const char *text, shade_shape *shape)
 static shade_shape choose_shape(const helio_device *device)
 {
     const char *variable = getenv("HELIOSTAT_VULKAN_SHADE");
-    shade_shape tried;
+    shade_shape tried = {0};
     if (variable != NULL && read_shape(variable, &tried))
         return tried;
     return device_is_software(device) ? (shade_shape){64, 64, 1} : (shade_shape){64, 32, 8};
