@@ -125,10 +125,11 @@ static void begin_surface_samples(gathering *g, uint32_t seed)
         const helio_material matte = {.kind = HELIO_MATERIAL_DIFFUSE, .diffuse = {1, 1, 1}};
         g->proposal = brdf_prepare(&matte, g->surface.normal, g->surface.view);
     } else {
-        brdf_prepare_share(&g->surface);
         if (g->has_tiles)
             g->surface.specular_share = 1.0f; /* only what the pools do not know; there is a specular lobe, or no
                                                  sample would be taken */
+        else
+            brdf_prepare_share(&g->surface);
         g->proposal = g->surface;
     }
     g->proposal_axes = brdf_find_axes(&g->proposal);

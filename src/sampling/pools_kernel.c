@@ -98,15 +98,21 @@ static float weighted(float radiance, float density)
     return ratio < FLT_MAX ? ratio : FLT_MAX;
 }
 
+/* What samples of all pools have: directions and radiance, in arrays `stride` floats apart. */
+static inline void store_light(float *to, size_t stride, const float direction[3], const float radiance[3])
+{
+    to[SAMPLE_X * stride] = direction[0];
+    to[SAMPLE_Y * stride] = direction[1];
+    to[SAMPLE_Z * stride] = direction[2];
+    to[SAMPLE_RED * stride] = radiance[0];
+    to[SAMPLE_GREEN * stride] = radiance[1];
+    to[SAMPLE_BLUE * stride] = radiance[2];
+}
+
 static void store_sample(helio_pools *pools, uint32_t pool, uint32_t index, const helio_table_sample *sample)
 {
     float *to = pools_array(pools, pool, SAMPLE_X) + index;
-    to[SAMPLE_X * pools->stride] = sample->direction[0];
-    to[SAMPLE_Y * pools->stride] = sample->direction[1];
-    to[SAMPLE_Z * pools->stride] = sample->direction[2];
-    to[SAMPLE_RED * pools->stride] = sample->radiance[0];
-    to[SAMPLE_GREEN * pools->stride] = sample->radiance[1];
-    to[SAMPLE_BLUE * pools->stride] = sample->radiance[2];
+    store_light(to, pools->stride, sample->direction, sample->radiance);
     to[SAMPLE_DENSITY * pools->stride] = sample->density;
     to[SAMPLE_WEIGHTED_RED * pools->stride] = weighted(sample->radiance[0], sample->density);
     to[SAMPLE_WEIGHTED_GREEN * pools->stride] = weighted(sample->radiance[1], sample->density);
@@ -188,12 +194,7 @@ static void store_listed(helio_pools *pools, uint32_t pool, uint32_t index, cons
 {
     float *to = pools_array(pools, pool, SAMPLE_X) + index;
     const float scale = 1.0f / probability;
-    to[SAMPLE_X * pools->stride] = sample->direction[0];
-    to[SAMPLE_Y * pools->stride] = sample->direction[1];
-    to[SAMPLE_Z * pools->stride] = sample->direction[2];
-    to[SAMPLE_RED * pools->stride] = sample->radiance[0];
-    to[SAMPLE_GREEN * pools->stride] = sample->radiance[1];
-    to[SAMPLE_BLUE * pools->stride] = sample->radiance[2];
+    store_light(to, pools->stride, sample->direction, sample->radiance);
     to[SAMPLE_DENSITY * pools->stride] = probability * sample->density;
     to[SAMPLE_WEIGHTED_RED * pools->stride] = finite_product(sample->weighted[0], scale);
     to[SAMPLE_WEIGHTED_GREEN * pools->stride] = finite_product(sample->weighted[1], scale);
