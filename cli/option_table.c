@@ -330,6 +330,12 @@ const cli_option option_table[] = {
      .kind = OPTION_FLAG,
      MEMBER(no_beta),
      STUDIED(GROUP_SAMPLING)},
+    {.name = "no-control",
+     .help = "leave out the control variate, by which the product strategies add light that is known exactly to matte "
+             "surfaces, in place of the samples' noise",
+     .kind = OPTION_FLAG,
+     MEMBER(no_control),
+     STUDIED(GROUP_SAMPLING)},
     {.name = "decorrelate",
      .argument = "D",
      .initial = "hash",
@@ -615,7 +621,7 @@ const cli_option option_table[] = {
     {.name = "strategies",
      .argument = "LIST",
      .initial = "face,face+brdf,light,light+brdf,product,product+brdf,brdf,cosine",
-     .help = "those to compare, as --strategy of render takes them, also with some of the options no-beta, "
+     .help = "those to compare, as --strategy of render takes them, also with some of the options no-beta, no-control, "
              "brdf-share=X, weighting=W "
              "and decorrelate=D behind colons, as in face:no-beta; lists are separated by commas, or by semicolons",
      .kind = OPTION_TEXT,

@@ -102,6 +102,7 @@ typedef struct cli_options {
     const char *strategy, *weighting, *decorrelate, *visibility, *seed_mode;
     double brdf_share;
     bool no_beta;
+    bool no_control;
 
     uint32_t size[2]; /* width, height */
     const char *background, *tonemap, *out, *stats;

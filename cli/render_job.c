@@ -80,6 +80,7 @@ helio_renderer_desc render_job_describe(const render_job *job)
         .bins = options->bins,
         .brdf_share = (float)options->brdf_share,
         .no_beta = options->no_beta,
+        .no_control = options->no_control,
         .no_decorrelation = options->decorrelate[0] == 'n',
         .no_visibility = options->visibility[0] == 'n',
         .background = job->plan.background,

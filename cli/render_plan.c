@@ -86,6 +86,8 @@ static void warn_of_idle_sampling(const render_plan *plan)
         message_warning("--device changes nothing with --backend %s", options->backend);
     if (options->no_beta && !by_face)
         message_warning("--no-beta changes nothing with --strategy %s", strategy);
+    if (options->no_control && strncmp(strategy, "product", 7) != 0)
+        message_warning("--no-control changes nothing with --strategy %s", strategy);
     if (options->bins != 8 && strncmp(strategy, "product", 7) != 0)
         message_warning("--bins changes nothing with --strategy %s", strategy);
     if (options->brdf_share != 0.5 && !has_brdf)

@@ -56,7 +56,8 @@ typedef struct samples_findings {
     technique_count techniques[TECHNIQUES], all;
     uint32_t fallen[6]; /* samples that lie in each face, whatever took them there */
     double flux[6];     /* of each face */
-    double radiance[3]; /* sum over the samples that are used */
+    double control[3];  /* of the control variate, see helio_counts */
+    double radiance[3]; /* sum over the samples that are used, and this */
     float exposure;     /* stops */
 } samples_findings;
 

@@ -170,6 +170,11 @@ static void add_step(samples_findings *found, const gathered_step *step)
         find_shadows(step->pixel, samples + first, step->count - first < MOST_RAYS ? step->count - first : MOST_RAYS);
     for (uint32_t i = 0; i < step->count; i++)
         count_sample(found, &samples[i]);
+    for (int c = 0; c < 3; c++) {
+        const double control = (double)step->counts.control[c] * step->share;
+        found->control[c] += control;
+        found->radiance[c] += control;
+    }
     for (uint32_t technique = 0; technique < TECHNIQUES; technique++) {
         found->techniques[technique].expected += (double)step->counts.expected[technique];
         found->all.expected += (double)step->counts.expected[technique];
@@ -210,6 +215,7 @@ static void forget(samples_findings *found)
     found->all = (technique_count){0};
     memset(found->techniques, 0, sizeof found->techniques);
     memset(found->fallen, 0, sizeof found->fallen);
+    memset(found->control, 0, sizeof found->control);
     memset(found->radiance, 0, sizeof found->radiance);
 }
 

@@ -25,6 +25,7 @@ json_t *samples_json_make(const render_job *job)
     json_object_set_new(object, "weighting", json_string(options->weighting));
     json_object_set_new(object, "visibility", json_string(options->visibility));
     json_object_set_new(object, "beta", json_boolean(!options->no_beta));
+    json_object_set_new(object, "control", json_boolean(!options->no_control));
     json_object_set_new(object, "spp", json_whole(options->spp));
     json_object_set_new(object, "seed", json_whole(options->seed));
     json_object_set_new(object, "frames", json_array());
@@ -109,6 +110,7 @@ bool samples_json_add(json_t *object, const samples_findings *found, const float
     json_object_set_new(frame, "exposure", json_number((double)found->exposure));
     json_object_set_new(frame, "pixel", json_pack("[oo]", json_whole(found->x), json_whole(found->y)));
     json_object_set_new(frame, "point", point_object(&found->pixel.point));
+    json_object_set_new(frame, "control", json_pack("[fff]", found->control[0], found->control[1], found->control[2]));
     json_object_set_new(frame, "radiance", json_pack("[fff]", radiance[0], radiance[1], radiance[2]));
     json_object_set_new(frame, "picture", floats(picture));
     json_object_set_new(frame, "passes", json_whole(found->passes));

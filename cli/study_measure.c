@@ -228,6 +228,7 @@ helio_status study_measure(study_job *job, const study_point *point, study_cell 
     desc.weighting = strategy->weighting;
     desc.brdf_share = strategy->brdf_share;
     desc.no_beta = strategy->no_beta;
+    desc.no_control = strategy->no_control;
     desc.no_decorrelation = strategy->no_decorrelation;
     *cell = (study_cell){.reference_rmse = job->truths[study_plan_still(job->light.count)].rmse,
                          .exposure = (double)job->exposure};

@@ -29,20 +29,25 @@ static int take_option(const char *word, study_strategy *strategy)
         strategy->no_beta = true;
         return EXIT_CODE_OK;
     }
+    if (strcmp(word, "no-control") == 0) {
+        strategy->no_control = true;
+        return EXIT_CODE_OK;
+    }
     if (strcmp(decorrelate, "none") == 0 || strcmp(decorrelate, "hash") == 0) {
         strategy->no_decorrelation = decorrelate[0] == 'n';
         return EXIT_CODE_OK;
     }
-    return message_usage(
-        "--strategies: after %s: come no-beta, brdf-share=0.001..0.999, weighting=solid-angle, paper or compensated, "
-        "decorrelate=hash or none, not '%s'",
-        helio_strategy_name(strategy->strategy), word);
+    return message_usage("--strategies: after %s: come no-beta, no-control, brdf-share=0.001..0.999, "
+                         "weighting=solid-angle, paper or compensated, "
+                         "decorrelate=hash or none, not '%s'",
+                         helio_strategy_name(strategy->strategy), word);
 }
 
 int study_strategy_parse(const char *text, const cli_options *options, study_strategy *strategy)
 {
     char words[sizeof strategy->name], *rest = NULL;
     *strategy = (study_strategy){.no_beta = options->no_beta,
+                                 .no_control = options->no_control,
                                  .no_decorrelation = options->decorrelate[0] == 'n',
                                  .brdf_share = (float)options->brdf_share};
     if (strlen(text) >= sizeof words)

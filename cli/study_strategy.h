@@ -11,13 +11,13 @@ typedef struct study_strategy {
     char name[96]; /* as it was given; auto by what it stands for */
     helio_strategy strategy;
     helio_weighting weighting;
-    bool no_beta, no_decorrelation;
+    bool no_beta, no_control, no_decorrelation;
     float brdf_share;
 } study_strategy;
 
-/* Understands "face", or "face:no-beta:weighting=paper" with some of the options no-beta, brdf-share=X, weighting=W and
- * decorrelate=D of the command line, which are in place of those in options. Returns an exit code; one sentence on
- * stderr tells what is wrong. */
+/* Understands "face", or "face:no-beta:weighting=paper" with some of the options no-beta, no-control, brdf-share=X,
+ * weighting=W and decorrelate=D of the command line, which are in place of those in options. Returns an exit code; one
+ * sentence on stderr tells what is wrong. */
 int study_strategy_parse(const char *text, const cli_options *options, study_strategy *strategy);
 
 /* Its colour in charts and tables: those of Okabe and Ito that can be read on white, an indigo and a brown, which the

@@ -102,7 +102,7 @@ if(HELIO_WITH_VULKAN)
                             "-DHELIO_WITH_VULKAN=OFF.")
     endif()
     set(SHADERS faults resample resample_large rows marginals faces moments evenness pools tiles tile_light bins greatest
-        lists draw_lists draw_bins shade shade_tiles background primary list_groups)
+        lists draw_lists draw_bins tile_control known control_sums shade shade_tiles background primary list_groups)
     include(HeliostatShaders)
     list(APPEND SOURCES src/vulkan/bins.c src/vulkan/buffer.c src/vulkan/bvh.c src/vulkan/commands.c src/vulkan/copy_rate.c src/vulkan/device.c src/vulkan/device_choice.c
          src/vulkan/frame.c src/vulkan/functions.c src/vulkan/handover.c

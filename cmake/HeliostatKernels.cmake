@@ -4,7 +4,8 @@
 
 set(KERNEL_SOURCES
     src/cpu/background_kernel.c src/env/exposure_kernel.c src/env/fault_kernel.c src/env/resampling_kernel.c
-    src/env/sky_kernel.c src/eval/face_points_kernel.c src/sampling/light_kernel.c
+    src/env/sky_kernel.c src/eval/face_points_kernel.c src/sampling/control_kernel.c
+    src/sampling/light_kernel.c
     src/sampling/point_tiles_kernel.c src/sampling/points_kernel.c
     src/sampling/pools_kernel.c src/sampling/set_kernel.c src/sampling/surface_kernel.c
     src/sampling/tables_kernel.c src/sampling/tiles_kernel.c src/sampling/weigh_kernel.c)
@@ -12,7 +13,7 @@ set(KERNEL_OBJECTS "")
 set(KERNEL_ISAS "")
 
 # Only where rounding may differ from machine to machine; drawing and tables have the same bits everywhere.
-set_source_files_properties(src/sampling/light_kernel.c src/sampling/weigh_kernel.c PROPERTIES COMPILE_OPTIONS -ffp-contract=fast)
+set_source_files_properties(src/sampling/control_kernel.c src/sampling/light_kernel.c src/sampling/weigh_kernel.c PROPERTIES COMPILE_OPTIONS -ffp-contract=fast)
 
 # Pools and points hold finite numbers: a greater-of becomes one instruction. No calls of memset for arrays of a few
 # registers, and loops over the lanes of a register stay loops until they are made into vectors.

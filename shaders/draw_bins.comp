@@ -31,7 +31,7 @@ void main()
     if (bin >= STATE.bin_count)
         return;
     if (STATE.bin_shares.at[bin] == 0.0) {
-        store_sample(sample_index, vec3(0.0), 0.0, vec3(0.0));
+        store_sample(sample_index, vec3(0.0), 0.0, vec3(0.0), 0u);
         return;
     }
     const uint seed = hash_combine(STEP.pool_seed, bin), total = STATE.bin_sums.at[first + STATE.tile_count];
@@ -46,5 +46,5 @@ void main()
     const float probability = float(weight) * STATE.bin_shares.at[bin];
     const vec4 direction = STATE.listed.at[2u * element];
     const vec3 light = min(STATE.listed.at[2u * element + 1u].rgb * (1.0 / probability), vec3(GREATEST_FLOAT));
-    store_sample(sample_index, direction.xyz, probability * direction.w, light);
+    store_sample(sample_index, direction.xyz, probability * direction.w, light, position);
 }

@@ -33,6 +33,8 @@ const uint KINDS = 7u, LIGHT = HELIO_LIGHT, SURFACE = HELIO_SURFACE, VISIBILITY 
 #include "rays.glsl"
 #include "samples.glsl"
 #include "pool_samples.glsl"
+#include "control.glsl"
+#include "control_point.glsl"
 
 // The light at this address, for all that follows in this invocation.
 void helio_use(uint64_t address)
@@ -92,7 +94,9 @@ vec3 helio_estimate(vec3 normal, vec3 geometric_normal, vec3 view, helio_surface
     STEP.samples = samples;
     STEP.brdf_share = brdf_share;
     STEP.no_beta = 0u;
-    return light_by_samples(prepare_with(point, m, seed), 0u, 1u).rgb;
+    STEP.control_part = 1.0;
+    const prepared_point prepared = prepare_with(point, m, seed);
+    return light_by_samples(prepared, 0u, 1u).rgb + control_of(prepared);
 }
 
 #endif

@@ -50,8 +50,12 @@
 #define LAYOUT_GGX 2
 
 /* A pool holds two vectors for each sample, in planes one after the other: its direction with its density given the
- * pool, and radiance / density with nothing. */
+ * pool, and radiance / density with the number of the tile, for pools of bins. */
 #define LAYOUT_POOL_PLANES 2
+
+/* The control variate, see control.h: rows of a matrix, which are vectors, and samples that are summed together. */
+#define LAYOUT_CONTROL_ROWS 4
+#define LAYOUT_CONTROL_CHUNK 4
 
 /* Streams of random numbers of a point, see gathering.h. */
 #define LAYOUT_STREAM_ROUNDING 1
@@ -204,6 +208,9 @@ struct layout_state {
     ADDRESS(uints, list_starts);   /* [tiles + 1] */
     ADDRESS(vectors, listed);      /* [list_capacity][2]: as in pools, given the tile */
     ADDRESS(doubles, moments);     /* [6][T][T][3]: see tile_moments in evenness.c */
+    ADDRESS(vectors, tile_light);   /* [tiles][LAYOUT_CONTROL_ROWS] */
+    ADDRESS(vectors, known);        /* [bins][LAYOUT_CONTROL_ROWS] */
+    ADDRESS(vectors, control_sums); /* [bins][chunks + 1][LAYOUT_CONTROL_ROWS] */
     ADDRESS(vectors, groups);  /* [tiles / LAYOUT_TILE_GROUP]: direction to the middle, edge, see tiles.h */
     UINT size;                     /* R */
     UINT weighting;                /* helio_weighting */
@@ -250,6 +257,8 @@ struct layout_step {
     UINT shows_background;
     FLOAT weight;          /* of all samples when the step is over */
     UINT has_ground;
+    FLOAT control_part;    /* of the control variate that is added */
+    UINT padding;
 };
 
 /* A map, and how it becomes a cube. Passes over a map push one instead of a step. */
@@ -277,8 +286,8 @@ struct layout_push {
 #ifndef VULKAN
 _Static_assert(sizeof(struct layout_sums) == 176, "as in the shaders");
 _Static_assert(sizeof(struct layout_material) == 48 && sizeof(struct layout_point) == 48, "as in the shaders");
-_Static_assert(sizeof(struct layout_state) == 24 * 8 + 18 * 4, "as in the shaders");
-_Static_assert(sizeof(struct layout_step) == 12 * 8 + 56 * 4, "as in the shaders");
+_Static_assert(sizeof(struct layout_state) == 27 * 8 + 18 * 4, "as in the shaders");
+_Static_assert(sizeof(struct layout_step) == 12 * 8 + 58 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_map) == 6 * 8 + 6 * 4 + LAYOUT_VIEWS * 20, "as in the shaders");
 _Static_assert(sizeof(struct layout_push) == 32, "as in the shaders");
 #endif

@@ -9,8 +9,9 @@ vec3 weighted(vec3 radiance, float density)
     return min(radiance / density, vec3(GREATEST_FLOAT));
 }
 
-void store_sample(uint index, vec3 direction, float density, vec3 light)
+// tile: of pools of bins; else 0.
+void store_sample(uint index, vec3 direction, float density, vec3 light, uint tile)
 {
     STATE.pools.at[index] = vec4(direction, density);
-    STATE.pools.at[STATE.pool_stride + index] = vec4(light, 0.0);
+    STATE.pools.at[STATE.pool_stride + index] = vec4(light, float(tile));
 }

@@ -33,7 +33,7 @@ void main()
     if (pool >= STATE.pool_count)
         return;
     if (is_black(pool)) {
-        store_sample(sample_index, vec3(0.0), 0.0, vec3(0.0)); // no point ever reads it
+        store_sample(sample_index, vec3(0.0), 0.0, vec3(0.0), 0u); // no point ever reads it
         return;
     }
     const face_place at = draw(pool, sample_index % STATE.pool_length);
@@ -41,5 +41,5 @@ void main()
     if (STATE.light == LAYOUT_LIGHT_WHOLE)
         density *= face_probability(at.face);
     const vec3 radiance = texel_radiance(texel_index(at.face, at.row, at.column));
-    store_sample(sample_index, cube_direction(at.face, at.u, at.v), density, weighted(radiance, density));
+    store_sample(sample_index, cube_direction(at.face, at.u, at.v), density, weighted(radiance, density), 0u);
 }

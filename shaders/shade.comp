@@ -25,6 +25,8 @@ layout(constant_id = 6) const uint VISIBILITY = 1u; // whether shadow rays are t
 #include "rays.glsl"
 #include "samples.glsl"
 #include "pool_samples.glsl"
+#include "control.glsl"
+#include "control_point.glsl"
 
 shared prepared_point points[POINTS];
 shared vec4 parts[LANES > 1u ? POINTS * LANES : 1u]; // light, and the number of useful samples
@@ -48,7 +50,7 @@ void finish(shading_point given, prepared_point p, vec4 sum)
 {
     if (weighs_tiles(p))
         return;
-    film_add(given.pixel, sum.rgb * STEP.intensity, true, given.hit == LAYOUT_HIT_OBJECT);
+    film_add(given.pixel, (sum.rgb + control_of(p)) * STEP.intensity, true, given.hit == LAYOUT_HIT_OBJECT);
     atomicAdd(samples_of_group, samples_of(p));
     atomicAdd(useful_of_group, uint(sum.w + 0.5));
 }

@@ -253,7 +253,8 @@ static double compare_estimates(const pipeline *plain, const pipeline *other, co
     uint64_t random = 5;
     for (int i = 0; i < POINTS; i++) {
         helio_shading_point point = make_point(&random, &material->material);
-        helio_estimate_desc desc = {.samples = counts[i % 6], .visibility = i % 4 == 1 ? some_reach : NULL};
+        helio_estimate_desc desc = {
+            .samples = counts[i % 6], .no_control = true, .visibility = i % 4 == 1 ? some_reach : NULL};
         float a[3], b[3];
         helio_estimate_info info_a, info_b;
         assert_ok(helio_estimate(plain->pools, &point, &desc, a, &info_a));
@@ -385,6 +386,7 @@ static void light_summed_in_the_pools_is_that_of_the_samples(void **state)
                 for (int n = 0; n < TOGETHER; n++) {
                     helio_sample samples[64];
                     helio_estimate_info info;
+                    helio_counts divided;
                     float alone[3], sum[3] = {0};
                     uint32_t count, useful = 0;
                     assert_ok(helio_estimate(p.pools, &points[n], &desc, alone, &info));
@@ -397,6 +399,9 @@ static void light_summed_in_the_pools_is_that_of_the_samples(void **state)
                             sum[c] += light[c];
                         useful += light[0] + light[1] + light[2] > 0;
                     }
+                    assert_ok(helio_count(p.pools, &points[n], &desc, &divided));
+                    for (int c = 0; c < 3; c++)
+                        sum[c] += divided.control[c];
                     assert_int_equal(info.samples, count);
                     assert_true(labs((long)info.useful - (long)useful) <= 1);
                     if (!materials[(k + n % 2) % MATERIALS].sharp)

@@ -116,6 +116,10 @@ static void add_gathered(const helio_pools *pools, const helio_pixel_step *pixel
     bool visible[MOST_SAMPLES];
     assert_in_range(pixel->estimate.samples, 1, MOST_SAMPLES);
     assert_ok(helio_gather(pools, &pixel->point, &pixel->estimate, samples, &count));
+    helio_counts counts;
+    assert_ok(helio_count(pools, &pixel->point, &pixel->estimate, &counts));
+    for (int c = 0; c < 3; c++)
+        sum[c] += (double)counts.control[c];
     for (uint32_t i = 0; i < count; i++) {
         const float *rgb = samples[i].contribution;
         if (rgb[0] + rgb[1] + rgb[2] > 0) {

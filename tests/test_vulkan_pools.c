@@ -59,6 +59,29 @@ static void compare_bins(vulkan_world *w)
                        "starts of lists");
 }
 
+/* Sums of light in another order: in relation to the largest, as matrices hold differences of much larger numbers. */
+static void compare_matrices(vulkan_world *w, const vulkan_buffer *buffer, const control_matrix *expected, size_t count,
+                             const char *what)
+{
+    float(*found)[4] = read_buffer(&w->commands, buffer, count * sizeof *expected);
+    float greatest = 0;
+    for (size_t i = 0; i < 16 * count; i++)
+        greatest = fmaxf(greatest, fabsf(expected[i / 16].rows[i / 4 % 4][i % 4]));
+    for (size_t i = 0; i < 16 * count; i++)
+        if (!is_near(found[i / 4][i % 4], expected[i / 16].rows[i / 4 % 4][i % 4], greatest))
+            fail_msg("%s: number %zu is %g in place of %g", what, i, (double)found[i / 4][i % 4],
+                     (double)expected[i / 16].rows[i / 4 % 4][i % 4]);
+    free(found);
+}
+
+static void compare_control(vulkan_world *w)
+{
+    const light_control *control = w->pools->control;
+    compare_matrices(w, &w->light.known, control->known, control->bins, "known light of bins");
+    compare_matrices(w, &w->light.control_sums, control->sums, control->bins * ((size_t)control->chunks + 1),
+                     "sums of pools");
+}
+
 static void compare_light(vulkan_world *w, uint32_t size, helio_weighting weighting, const helio_pools_desc *desc)
 {
     world_make_light(w, size, weighting, desc);
@@ -66,8 +89,10 @@ static void compare_light(vulkan_world *w, uint32_t size, helio_weighting weight
         print_message("%s, R = %u, %s\n", helio_strategy_name(desc->strategy), size, map_kind_name((map_kind)kind));
         fill_cube(w->environment, (map_kind)kind, size + (uint64_t)kind);
         world_update(w, 5 + (uint32_t)kind, size % 3);
-        if (w->pools->bins != NULL)
+        if (w->pools->bins != NULL) {
             compare_bins(w);
+            compare_control(w);
+        }
         compare_pools(w);
     }
     world_destroy_light(w);

@@ -38,6 +38,7 @@ typedef struct helio_renderer_desc {
     uint32_t bins;        /* B, for PRODUCT; default 8 */
     float brdf_share;     /* default 0.5 */
     bool no_beta;
+    bool no_control;
     bool no_decorrelation; /* all pixels read the same windows of the pools: shows bands */
     bool no_visibility;    /* light passes through everything, the paper's setting; default: shadow rays */
     helio_background background;

@@ -178,6 +178,8 @@ typedef struct helio_estimate_desc {
                                     multiplied by those of the share */
     bool no_beta;     /* spread samples by flux alone over the faces that reach above the horizon: shows the
                                     discontinuities of the paper's supplement, Figure 1 */
+    bool no_control;  /* leave out the control variate, which adds light known exactly to matte points that read
+                                    pools of PRODUCT and PRODUCT_BRDF */
     helio_visibility visibility; /* default: nothing is in the way */
     void *user;                  /* handed to visibility */
 } helio_estimate_desc;
@@ -191,9 +193,15 @@ typedef struct helio_counts {
                              as is: */
     uint32_t first[7];    /* a light technique takes samples first ... first + realised - 1 of its pool; else 0, and
                              for HELIO_POOL_OF_TILES */
+    /* The control variate, radiance: light of the pool's bin that is known exactly, less what the point's samples say
+     * of it, and so 0 on average; half of that where desc has a visibility function. The estimate is the sum of the
+     * visible contributions and this. May be negative; 0 where there is none. Hosts that trace the samples themselves
+     * may take any part of it, and half is good. */
+    float control[3];
 } helio_counts;
 
-/* One light sample of a point. The estimate is the sum of all contributions that are visible. */
+/* One light sample of a point. The estimate is the sum of all contributions that are visible, and
+ * helio_counts.control. */
 typedef struct helio_sample {
     float direction[3];    /* world space */
     float contribution[3]; /* radiance x BRDF x cosine / sum_k m_k pdf_k: the balance heuristic, already divided */

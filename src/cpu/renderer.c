@@ -216,6 +216,7 @@ struct frame frame_begin(const helio_renderer *renderer, const camera_frame *cam
         .tile_count = tiles_across * ((desc->height + TILE - 1) / TILE),
         .settings = {.brdf_share = desc->brdf_share,
                      .no_beta = desc->no_beta,
+                     .no_control = desc->no_control,
                      .visibility = shade_visibility(renderer),
                      .user = (void *)(uintptr_t)desc->scene},
     };

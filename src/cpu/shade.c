@@ -70,7 +70,8 @@ static void add_light(const float radiance[3], double weight, double sum[3])
 
 static void add_estimate(hit_kind kind, const estimate_result *result, double weight, film_light *light)
 {
-    if (kind == HIT_CATCHER) {
+    float radiance[3];
+    if (kind == HIT_CATCHER) { /* the ratio of sums over the same samples needs no control */
         light->catcher += weight;
         light->reaching += weight * (double)luminance(result->visible);
         light->unoccluded += weight * (double)luminance(result->unoccluded);
@@ -78,7 +79,8 @@ static void add_estimate(hit_kind kind, const estimate_result *result, double we
     }
     light->covered += weight;
     light->object += kind == HIT_OBJECT ? weight : 0.0;
-    add_light(result->visible, weight, light->rgb);
+    estimate_radiance(result, radiance);
+    add_light(radiance, weight, light->rgb);
 }
 
 /* ---- pixels ---- */
@@ -150,7 +152,8 @@ static void add_pixel(const struct frame *frame, const pixel_queue *queue, uint3
 static void put_pixel(const struct frame *frame, const pixel_queue *queue, uint32_t i, const estimate_result *result)
 {
     const size_t index = queue->pixels[i];
-    const float rgba[4] = {result->visible[0], result->visible[1], result->visible[2], 1.0f};
+    float rgba[4] = {0, 0, 0, 1};
+    estimate_radiance(result, rgba);
     film_put(&frame->renderer->film, index, rgba, frame->renderer->hits.kinds[index] == HIT_OBJECT ? 1.0f : 0.0f);
 }
 

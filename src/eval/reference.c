@@ -56,6 +56,7 @@ static void light_by_quadrature(void *user, size_t pixel, const helio_shading_po
     quadrature_point(reference->quadrature, point, &sum);
     for (int c = 0; c < 3; c++) {
         result->visible[c] = result->unoccluded[c] = (float)sum.rgb[c];
+        result->control[c] = 0.0f;
         reference->bounds[pixel][c] = (float)sum.bound[c];
     }
     result->info = (helio_estimate_info){.samples = (uint32_t)sum.evaluations};

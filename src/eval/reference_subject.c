@@ -84,7 +84,8 @@ static uint64_t describe_settings(const helio_reference *reference)
     digest = digest_word(digest, (uint64_t)desc->spp << 32 | desc->aa);
     digest = digest_word(digest, (uint64_t)desc->pool_length << 32 | (uint64_t)desc->background);
     digest = digest_float(digest, desc->brdf_share);
-    return digest_word(digest, (uint64_t)(desc->no_beta | desc->no_decorrelation << 1 | desc->no_visibility << 2));
+    return digest_word(digest, (uint64_t)(desc->no_beta | desc->no_decorrelation << 1 | desc->no_visibility << 2 |
+                                          desc->no_control << 3));
 }
 
 checkpoint_subject reference_describe(const helio_reference *reference)

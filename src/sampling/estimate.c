@@ -333,6 +333,31 @@ static void estimate_from_pools(const helio_pools *pools, uint32_t samples, cons
     }
 }
 
+float estimate_control_part(bool no_control, bool has_visibility)
+{
+    if (no_control)
+        return 0.0f;
+    return has_visibility ? 0.5f : 1.0f;
+}
+
+/* 0 where there is none. */
+static void find_control(const helio_pools *pools, const helio_shading_point *point, const helio_estimate_desc *desc,
+                         const point_block *block, uint32_t i, float control[3])
+{
+    memset(control, 0, 3 * sizeof *control);
+    const float part = estimate_control_part(desc->no_control, desc->visibility != NULL);
+    if (pools->control == NULL || part == 0.0f || point->material.kind != HELIO_MATERIAL_DIFFUSE ||
+        !reads_pools_alone(block, i))
+        return;
+    const uint32_t pool = block->pools[0][i];
+    const vec3 irradiance = control_difference(pools->control, pool, block->windows[0][i] - pool * pools->pool_length,
+                                               block->realised[0][i], point_vector(&block->normal, i));
+    const float light[3] = {irradiance.x, irradiance.y, irradiance.z};
+    const float factor = part * (float)(1.0 / PI) * pools->tables->environment->intensity;
+    for (int c = 0; c < 3; c++)
+        control[c] = factor * point->material.diffuse[c] * light[c];
+}
+
 void estimate_points(const helio_pools *pools, uint32_t count, const helio_shading_point *points,
                      const helio_estimate_desc *desc, estimate_result *results)
 {
@@ -348,6 +373,8 @@ void estimate_points(const helio_pools *pools, uint32_t count, const helio_shadi
         begin(&g, pools, &points[i], desc, &block, i);
         estimate_by_blocks(&g, kernels, &points[i], desc, &results[i]);
     }
+    for (uint32_t i = 0; i < count; i++)
+        find_control(pools, &points[i], desc, &block, i, results[i].control);
 }
 
 /* ---- the public functions ---- */
@@ -413,7 +440,7 @@ static helio_status estimate_checked(const helio_pools *pools, uint32_t count, c
     HELIO_TRY(resolve_points(count, given, points));
     estimate_points(pools, count, points, desc, results);
     for (uint32_t i = 0; i < count; i++) {
-        memcpy(radiance[i], results[i].visible, sizeof radiance[i]);
+        estimate_radiance(&results[i], radiance[i]);
         if (infos != NULL)
             infos[i] = results[i].info;
     }
@@ -436,7 +463,7 @@ helio_status helio_estimate_points(const helio_pools *pools, uint32_t count, con
 }
 
 static helio_status begin_checked(const helio_pools *pools, const helio_shading_point *given_point,
-                                  const helio_estimate_desc *given, gathering *g)
+                                  const helio_estimate_desc *given, gathering *g, float control[3])
 {
     helio_estimate_desc desc;
     helio_shading_point point;
@@ -447,6 +474,7 @@ static helio_status begin_checked(const helio_pools *pools, const helio_shading_
     HELIO_TRY(resolve_points(1, given_point, &point));
     prepare_points(pools, 1, &point, &desc, &block);
     begin(g, pools, &point, &desc, &block, 0);
+    find_control(pools, &point, &desc, &block, 0, control);
     return HELIO_OK;
 }
 
@@ -467,10 +495,12 @@ helio_status helio_count(const helio_pools *pools, const helio_shading_point *po
                          helio_counts *counts)
 {
     gathering g;
+    float control[3];
     if (counts == NULL)
         return fail(HELIO_ERR_ARGUMENT, "helio_count needs a place for the counts");
-    HELIO_TRY(begin_checked(pools, point, desc, &g));
+    HELIO_TRY(begin_checked(pools, point, desc, &g, control));
     *counts = g.counts;
+    memcpy(counts->control, control, sizeof counts->control);
     memset(counts->pool, 0, sizeof counts->pool);
     memset(counts->first, 0, sizeof counts->first);
     for (uint32_t k = 0; k < pools->techniques; k++) {
@@ -506,10 +536,11 @@ helio_status helio_gather(const helio_pools *pools, const helio_shading_point *p
 {
     gathering g;
     sample_block block;
+    float control[3];
     uint32_t taken = 0, technique = 0, start = 0, end = 0; /* of the samples of technique - 1 */
     if (samples == NULL || count == NULL)
         return fail(HELIO_ERR_ARGUMENT, "helio_gather needs places for samples and their count");
-    HELIO_TRY(begin_checked(pools, point, desc, &g));
+    HELIO_TRY(begin_checked(pools, point, desc, &g, control));
     const kernel_set *kernels = kernels_of(context_isa(g.environment->context));
     for (sample_cursor cursor = {0}; next_block(&g, kernels, &cursor, &block);)
         for (uint32_t i = 0; i < block.count; i++, taken++) {

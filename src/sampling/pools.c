@@ -82,6 +82,8 @@ helio_status helio_pools_create(helio_tables *tables, const helio_pools_desc *gi
     if (status == HELIO_OK && pools->parts.light == STRATEGY_LIGHT_BINS)
         status =
             normal_bins_create(tables->environment->context, desc.bins, tables->size, pools->pool_length, &pools->bins);
+    if (status == HELIO_OK && pools->bins != NULL)
+        status = control_create(tables->environment->context, pools->bins, &pools->control);
     if (status != HELIO_OK) {
         helio_pools_destroy(pools);
         return status;
@@ -95,6 +97,7 @@ void helio_pools_destroy(helio_pools *pools)
     if (pools == NULL)
         return;
     helio_context *context = pools->tables->environment->context;
+    control_destroy(pools->control);
     normal_bins_destroy(pools->bins);
     context_release(context, pools->third_dimension);
     context_release(context, pools->samples);
@@ -133,6 +136,9 @@ static void clear_samples(helio_pools *pools, uint32_t pool, uint32_t first, uin
 {
     for (int array = 0; array < POOL_ARRAYS; array++)
         memset(pools_array(pools, pool, (enum sample_array)array) + first, 0, count * sizeof(float));
+    if (pools->control != NULL)
+        memset(control_chunks(pools->control, pool) + first / CONTROL_CHUNK, 0,
+               count / CONTROL_CHUNK * sizeof(control_matrix));
 }
 
 static void draw_piece(void *data, size_t piece)
@@ -162,11 +168,15 @@ helio_status helio_pools_draw(helio_pools *pools, uint32_t seed, uint32_t pass)
     if (pools->bins != NULL) {
         work.draw = kernels->draw_bin;
         normal_bins_update(pools->bins, pools->tables);
+        if (pools->frame != environment->frame)
+            control_update(pools->control, pools->bins, environment);
         if (pools->is_automatic && pools->frame != environment->frame)
             pools->is_even = evenness_holds(pools->bins->tiles, pools->tables);
         normal_bins_draw_lists(pools->bins, pools->tables, hash_combine(work.seed, pools->count));
     }
     context_parallel_for(environment->context, (size_t)pools->count * pieces_per_pool(pools), draw_piece, &work);
+    if (pools->control != NULL)
+        control_sum_pools(pools->control);
     pools->frame = environment->frame;
     return HELIO_OK;
 }

@@ -3,6 +3,7 @@
 #ifndef HELIOSTAT_SRC_POOLS_H
 #define HELIOSTAT_SRC_POOLS_H
 
+#include "sampling/control.h"
 #include "sampling/elementary.h"
 #include "sampling/normal_bins.h"
 #include "sampling/strategy.h"
@@ -36,14 +37,15 @@ struct helio_pools {
     const helio_tables *tables;
     helio_strategy strategy; /* never AUTO */
     strategy_parts parts;
-    uint32_t length;      /* M */
-    uint32_t count;       /* pools: 6, 1, 6 B^2 or 0 */
-    uint32_t techniques;  /* pools of which a point reads: 6, 1 or 0 */
-    uint32_t pool_length; /* samples in each: M, or 6 M where there is one pool */
-    bool is_automatic;    /* the strategy was chosen by AUTO, and so may be left where ... */
-    bool is_even;         /* ... the light is: all samples are then the surface's */
-    normal_bins *bins;    /* what the pools of STRATEGY_LIGHT_BINS are drawn from; NULL for others */
-    uint64_t frame;       /* of the environment, when drawn */
+    uint32_t length;        /* M */
+    uint32_t count;         /* pools: 6, 1, 6 B^2 or 0 */
+    uint32_t techniques;    /* pools of which a point reads: 6, 1 or 0 */
+    uint32_t pool_length;   /* samples in each: M, or 6 M where there is one pool */
+    bool is_automatic;      /* the strategy was chosen by AUTO, and so may be left where ... */
+    bool is_even;           /* ... the light is: all samples are then the surface's */
+    normal_bins *bins;      /* what the pools of STRATEGY_LIGHT_BINS are drawn from; NULL for others */
+    light_control *control; /* what is known of the light of these bins; NULL for others */
+    uint64_t frame;         /* of the environment, when drawn */
     /* [POOL_ARRAYS], arrays `stride` floats apart: [count][pool_length] each, and POOL_PADDING more that may be read.
      * Directions in the map's space, radiance, density given the pool (1/sr). */
     float *samples;

@@ -244,20 +244,46 @@ static void choose_listed(const normal_bins *bins, uint32_t bin, uint32_t first,
             (group->place[i] - (double)sums[position]) / (double)(sums[position + 1] - sums[position]);
         const uint32_t element = (uint32_t)(int32_t)(within * (double)length);
         group->element[i] = (int32_t)(starts[position] + (element < length ? element : length - 1));
+        __builtin_prefetch(&bins->listed[group->element[i]]);
     }
+}
+
+/* Adds what a sample stands for, see control.h, to its chunk's sum. */
+static void add_known(const helio_pools *pools, const normal_bin *bin, uint32_t index, uint32_t position,
+                      control_matrix *chunks)
+{
+    const tiles *t = pools->bins->tiles;
+    const vec3 centre = {t->x[position], t->y[position], t->z[position]};
+    const control_line line = control_line_of(bin, dot(bin->centre, centre));
+    const float *sample = pools_array(pools, 0, SAMPLE_X) + index;
+    control_matrix *sum = &chunks[index % pools->pool_length / CONTROL_CHUNK];
+    const vec3 direction = {sample[SAMPLE_X * pools->stride], sample[SAMPLE_Y * pools->stride],
+                            sample[SAMPLE_Z * pools->stride]};
+    const float factors[4] = {line.slope * direction.x, line.slope * direction.y, line.slope * direction.z,
+                              line.offset * dot(centre, direction)};
+    const float light[3] = {sample[SAMPLE_WEIGHTED_RED * pools->stride], sample[SAMPLE_WEIGHTED_GREEN * pools->stride],
+                            sample[SAMPLE_WEIGHTED_BLUE * pools->stride]};
+    for (int row = 0; row < 4; row++)
+        for (int c = 0; c < 3; c++)
+            sum->rows[row][c] += factors[row] * light[c];
 }
 
 void KERNEL(draw_bin)(helio_pools *pools, uint32_t bin, uint32_t first, uint32_t count, uint32_t seed)
 {
     const normal_bins *bins = pools->bins;
     const uint32_t seed_x = dimension_seed(seed, 0);
+    control_matrix *chunks = control_chunks(pools->control, bin);
     for (uint32_t done = 0; done < count; done += GROUP) {
         const uint32_t some = count - done < GROUP ? count - done : GROUP;
         bin_group group;
         choose_listed(bins, bin, first + done, seed_x, &group);
-        for (uint32_t i = 0; i < some; i++)
+        memset(chunks + (first + done) / CONTROL_CHUNK, 0, some / CONTROL_CHUNK * sizeof *chunks);
+        for (uint32_t i = 0; i < some; i++) {
             store_listed(pools, bin, first + done + i, &bins->listed[group.element[i]],
                          normal_bins_probability(bins, bin, (uint32_t)group.position[i]));
+            add_known(pools, &bins->bins[bin], bin * pools->pool_length + first + done + i, (uint32_t)group.position[i],
+                      chunks);
+        }
     }
 }
 

@@ -6,6 +6,8 @@
 const kernel_set KERNEL(kernels) = {
     .sum_row = KERNEL(sum_row),
     .weigh_tiles = KERNEL(weigh_tiles),
+    .add_texels = KERNEL(add_texels),
+    .know_bin = KERNEL(know_bin),
     .weigh_point = KERNEL(weigh_point),
     .draw_pool = KERNEL(draw_pool),
     .draw_tile = KERNEL(draw_tile),

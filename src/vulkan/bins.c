@@ -6,6 +6,9 @@
 #include "vulkan/light.h"
 
 enum { THREADS = 64, THREADS_OF_TILE = 32 };
+_Static_assert(sizeof(control_matrix) == LAYOUT_CONTROL_ROWS * 4 * sizeof(float) &&
+                   (int)LAYOUT_CONTROL_CHUNK == (int)CONTROL_CHUNK,
+               "as in control.h");
 _Static_assert((int)LAYOUT_TILE_GROUP == (int)TILE_GROUP && (int)LAYOUT_TILES_MOST == (int)TILES_MOST, "as in tiles.h");
 
 /* ---- creation ----------------------------------------------------------------------------- */
@@ -38,6 +41,10 @@ static helio_status create_buffers(vulkan_light *light)
         {&light->list_starts, BUFFER_ON_DEVICE, t->count + 1, sizeof(uint32_t), "the lengths of lists"},
         {&light->moments, BUFFER_ON_DEVICE, is_automatic(light) ? t->count : 0, 3 * sizeof(double),
          "the moments of tiles"},
+        {&light->tile_light, BUFFER_ON_DEVICE, t->count, sizeof(control_matrix), "the known light of tiles"},
+        {&light->known, BUFFER_ON_DEVICE, bins->count, sizeof(control_matrix), "the known light of bins"},
+        {&light->control_sums, BUFFER_ON_DEVICE, bins->count * (light->shape->control->chunks + (uint64_t)1),
+         sizeof(control_matrix), "the sums of pools"},
         {&light->listed, BUFFER_ON_DEVICE, 2 * (uint64_t)bins->capacity, 4 * sizeof(float), "the lists of tiles"},
     };
     return light_create_buffers(light, all, sizeof all / sizeof *all);
@@ -61,6 +68,9 @@ static void tell(vulkan_light *light)
     state->list_starts = light->list_starts.address;
     state->listed = light->listed.address;
     state->moments = light->moments.address;
+    state->tile_light = light->tile_light.address;
+    state->known = light->known.address;
+    state->control_sums = light->control_sums.address;
     state->groups = light->groups.address;
     state->is_automatic = is_automatic(light);
     state->tiles_per_edge = bins->tiles->per_edge;
@@ -90,6 +100,9 @@ static helio_status create_passes(vulkan_light *light)
         {PASS_LISTS, {"lists", 1, {threads}}},
         {PASS_DRAW_LISTS, {"draw_lists", 1, {THREADS}}},
         {PASS_DRAW_BINS, {"draw_bins", 1, {THREADS}}},
+        {PASS_TILE_CONTROL, {"tile_control", 1, {threads}}},
+        {PASS_KNOWN, {"known", 1, {threads}}},
+        {PASS_CONTROL_SUMS, {"control_sums", 1, {threads < THREADS ? threads : THREADS}}},
     };
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         HELIO_TRY(pipeline_create(light->device, &all[i].desc, &light->passes[all[i].pass]));
@@ -170,10 +183,12 @@ static void record_weights(vulkan_light *light, vulkan_commands *commands)
         commands_barrier(commands);
         commands_dispatch(commands, light->passes[PASS_EVENNESS], &push, CUBE_FACES);
     }
+    commands_dispatch(commands, light->passes[PASS_TILE_CONTROL], &push, state->tile_count);
     commands_dispatch(commands, light->passes[PASS_TILES], &push, state->tile_count);
     commands_barrier(commands);
     commands_dispatch(commands, light->passes[PASS_TILE_LIGHT], &push, 1);
     commands_barrier(commands);
+    commands_dispatch(commands, light->passes[PASS_KNOWN], &push, state->bin_count);
     commands_dispatch(commands, light->passes[PASS_BINS], &push, state->bin_count);
     commands_barrier(commands);
     commands_dispatch(commands, light->passes[PASS_GREATEST], &greatest, groups(state->tile_count));
@@ -190,4 +205,6 @@ void light_record_bins(vulkan_light *light, vulkan_commands *commands, uint64_t 
     commands_dispatch(commands, light->passes[PASS_DRAW_LISTS], &push, groups(light->state.list_capacity));
     commands_barrier(commands);
     commands_dispatch(commands, light->passes[PASS_DRAW_BINS], &push, groups(light->state.pool_stride));
+    commands_barrier(commands);
+    commands_dispatch(commands, light->passes[PASS_CONTROL_SUMS], &push, light->state.bin_count);
 }

@@ -45,6 +45,7 @@ static struct layout_step describe_step(const struct vulkan_renderer *v, const s
         .samples = frame->step.samples,
         .brdf_share = desc->brdf_share != 0.0f ? desc->brdf_share : DEFAULT_BRDF_SHARE,
         .no_beta = desc->no_beta,
+        .control_part = estimate_control_part(desc->no_control, !desc->no_visibility),
         .normals = v->normals.address,
         .counts_of_lists = v->points.counts.address,
         .groups_of_lists = v->points.groups.address,

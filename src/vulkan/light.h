@@ -24,6 +24,9 @@ typedef enum light_pass {
     PASS_LISTS,
     PASS_DRAW_LISTS,
     PASS_DRAW_BINS,
+    PASS_TILE_CONTROL,
+    PASS_KNOWN,
+    PASS_CONTROL_SUMS,
     LIGHT_PASSES
 } light_pass;
 
@@ -55,6 +58,7 @@ typedef struct vulkan_light {
     vulkan_buffer groups;
     vulkan_buffer moments; /* where the strategy may be left */
     vulkan_buffer bins, bin_sums, bin_shares, greatest, list_starts, listed;
+    vulkan_buffer tile_light, known, control_sums;
     VkPipeline passes[LIGHT_PASSES]; /* those that the strategy needs */
 } vulkan_light;
 
