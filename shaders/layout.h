@@ -65,6 +65,13 @@
 #define LAYOUT_SHARED_MATERIALS 2
 #define LAYOUT_HIT_OBJECT 1
 #define LAYOUT_HIT_PLANE 2
+#define LAYOUT_HIT_CATCHER 3
+
+/* What becomes of light that something is in the way of, a constant of pipelines: nothing, as it passes; shadows; shadows
+ * which are all that is seen of the ground. */
+#define LAYOUT_SHADOWS_NONE 0
+#define LAYOUT_SHADOWS_CAST 1
+#define LAYOUT_SHADOWS_CAUGHT 2
 
 /* sum x 2^-exponent, see row_sum in tables.h. */
 struct layout_row_sum {
@@ -221,6 +228,7 @@ struct layout_step {
     ADDRESS(vectors, materials);             /* [...][3]: struct layout_material */
     ADDRESS(vectors, picture);               /* [height][width]: red, green, blue, alpha */
     ADDRESS(floats, object);                 /* [height][width] */
+    ADDRESS(vectors, caught);                /* [height][width][2]: see film.glsl; nothing without a shadow catcher */
     ADDRESS(uints, misses);                  /* [miss_count]: pixels that show the background */
     ADDRESS(counts_of_frame, counts);
     ADDRESS(vectors, origins);  /* [point_count]: where shadow rays start, see rays.glsl; nothing without them */
@@ -249,7 +257,7 @@ struct layout_step {
     UINT is_first, is_last;
     UINT shows_background;
     FLOAT weight;          /* of all samples when the step is over */
-    UINT has_ground;
+    UINT ground_hit;       /* LAYOUT_HIT_PLANE or _CATCHER; 0 where there is no ground */
 };
 
 /* A map, and how it becomes a cube. Passes over a map push one instead of a step. */
@@ -278,7 +286,7 @@ struct layout_push {
 _Static_assert(sizeof(struct layout_sums) == 176, "as in the shaders");
 _Static_assert(sizeof(struct layout_material) == 48 && sizeof(struct layout_point) == 48, "as in the shaders");
 _Static_assert(sizeof(struct layout_state) == 24 * 8 + 18 * 4, "as in the shaders");
-_Static_assert(sizeof(struct layout_step) == 12 * 8 + 56 * 4, "as in the shaders");
+_Static_assert(sizeof(struct layout_step) == 13 * 8 + 56 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_map) == 6 * 8 + 6 * 4 + LAYOUT_VIEWS * 20, "as in the shaders");
 _Static_assert(sizeof(struct layout_push) == 32, "as in the shaders");
 #endif

@@ -5,7 +5,7 @@
 // scene_intersect_many() in src/scene/scene.c.
 #include "common.glsl"
 
-const uint VISIBILITY = 1u, EDGE = 8u;
+const uint VISIBILITY = LAYOUT_SHADOWS_CAST, EDGE = 8u;
 
 #include "random.glsl"
 #include "camera.glsl"
@@ -103,13 +103,13 @@ surface_hit meet_ground(vec3 origin, vec3 direction)
     position.y = STEP.ground_height;
     const vec3 normal = vec3(0.0, direction.y < 0.0 ? 1.0 : -1.0, 0.0);
     const bool is_met = distance >= 0.0 && distance < 1e15;
-    return surface_hit(is_met ? LAYOUT_HIT_PLANE : 0u, LAYOUT_MATERIAL_GROUND, position, normal, normal);
+    return surface_hit(is_met ? STEP.ground_hit : 0u, LAYOUT_MATERIAL_GROUND, position, normal, normal);
 }
 
 // The whole mesh stands on the plane: from below the plane comes first, and from above the mesh does.
 surface_hit meet(vec3 origin, vec3 direction)
 {
-    const bool has_ground = STEP.has_ground != 0u, below = has_ground && origin.y < STEP.ground_height;
+    const bool has_ground = STEP.ground_hit != 0u, below = has_ground && origin.y < STEP.ground_height;
     if (!below) {
         const nearest_hit hit = find_nearest(origin, direction);
         if (hit.distance < 1e38)
@@ -126,8 +126,10 @@ vec4 shadow_origin(surface_hit hit)
     const vec3 n = hit.geometric_normal, sizes = abs(n) * (abs(hit.position) + STEP.extent);
     const float rounding = 16.0 * 0.5 * 1.19209290e-7;
     const vec3 to_centre = vec3(STEP.sphere[0], STEP.sphere[1], STEP.sphere[2]) - hit.position;
-    const bool underside = STEP.has_ground != 0u && n.y == -1.0 && hit.position.y == STEP.ground_height;
-    const uint known = (underside ? 1u : 0u) | (dot(to_centre, to_centre) > STEP.sphere[3] ? 2u : 0u);
+    const bool underside = STEP.ground_hit != 0u && n.y == -1.0 && hit.position.y == STEP.ground_height;
+    const bool is_far = dot(to_centre, to_centre) > STEP.sphere[3];
+    const uint known =
+        (underside ? 1u : 0u) | (is_far ? 2u : 0u) | (hit.kind == LAYOUT_HIT_CATCHER ? 4u : 0u);
     return vec4(hit.position + n * (rounding * (sizes.x + sizes.y + sizes.z)), uintBitsToFloat(known));
 }
 

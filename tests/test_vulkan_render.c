@@ -32,6 +32,9 @@ static bool plays_hardware, casts_rays;
  * more closely. */
 static bool traces;
 
+/* Of the scenes. Alpha tells of shadows by itself where the ground is a shadow catcher, and is a part of 1. */
+static helio_ground ground = HELIO_GROUND_PLANE;
+
 static stage make_stage(const char *material, const helio_renderer_desc *given)
 {
     stage s = {.context = make_context(1, NULL)};
@@ -42,7 +45,7 @@ static stage make_stage(const char *material, const helio_renderer_desc *given)
     assert_ok(helio_environment_create(s.context, &(helio_environment_desc){.cube_size = SIZE}, &s.environment));
     s.mesh = make_unit_sphere(s.context);
     assert_ok(helio_material_parse(material, &parsed));
-    const helio_scene_desc scene = {.mesh = s.mesh, .material = &parsed, .ground = HELIO_GROUND_PLANE};
+    const helio_scene_desc scene = {.mesh = s.mesh, .material = &parsed, .ground = ground};
     assert_ok(helio_scene_create(s.context, &scene, &s.scene));
     helio_renderer_desc desc = *given;
     desc.environment = s.environment;
@@ -94,7 +97,7 @@ static difference compare_pictures(const stage *s, double tolerance)
     const helio_picture a = helio_renderer_picture(s->vulkan), b = helio_renderer_picture(s->cpu);
     difference d = {.count = a.width * a.height};
     for (size_t i = 0; i < d.count; i++) {
-        double off = 0, size = 0;
+        double off = 0, size = ground == HELIO_GROUND_SHADOW ? 1 : 0;
         for (size_t c = 0; c < 4; c++) {
             off = fmax(off, fabs((double)a.rgba[4 * i + c] - (double)b.rgba[4 * i + c]));
             size = fmax(size, fabs((double)b.rgba[4 * i + c]));
@@ -202,6 +205,53 @@ static void rays_of_the_device_see_the_same(void **state)
         destroy_stage(&s);
     }
     traces = casts_rays = false;
+}
+
+static double greatest_alpha_of_ground(const stage *s)
+{
+    const helio_picture picture = helio_renderer_picture(s->vulkan);
+    double greatest = 0;
+    for (size_t i = 0; i < (size_t)picture.width * picture.height; i++)
+        if (picture.object[i] == 0.0f)
+            greatest = fmax(greatest, (double)picture.rgba[4 * i + 3]);
+    return greatest;
+}
+
+static bool stop_at_half(void *user, float done)
+{
+    (void)user;
+    return done < 0.5f;
+}
+
+/* With the environment behind shadows or without, several camera samples, and a frame that stops. */
+static void shadows_are_caught_as_on_the_cpu(void **state)
+{
+    static const helio_renderer_desc descs[] = {
+        {.strategy = HELIO_STRATEGY_FACE, .aa = 4, .spp = 8, .background = HELIO_BACKGROUND_ENVIRONMENT},
+        {.spp = 64, .bins = 3},
+    };
+    (void)state;
+    ground = HELIO_GROUND_SHADOW;
+    casts_rays = true;
+    for (size_t i = 0; i < 2; i++) {
+        helio_frame_info cpu, vulkan;
+        traces = plays_hardware = i == 1;
+        stage s = make_stage(MATERIALS[i], &descs[i]);
+        light_stage_with(&s, 17);
+        render_both(&s, &cpu, &vulkan);
+        const difference d = compare_pictures(&s, ROUNDING);
+        print_message("mean %.2e, worst %.2e, %u of %u pixels off\n", d.mean, d.worst, d.off, d.count);
+        assert_true(d.off <= (traces ? d.count / 10 : 0) && d.mean < 1e-3);
+        assert_true(traces || (vulkan.points == cpu.points && vulkan.rays == cpu.rays));
+        assert_true(i == 0 || greatest_alpha_of_ground(&s) > 0.5);
+        s.frame.progress = i == 0 ? stop_at_half : NULL;
+        render_both(&s, &cpu, &vulkan);
+        assert_true(cpu.stopped == (i == 0) && vulkan.stopped == (i == 0));
+        assert_true(compare_pictures(&s, ROUNDING).off <= (traces ? d.count / 10 : 0));
+        destroy_stage(&s);
+    }
+    traces = casts_rays = plays_hardware = false;
+    ground = HELIO_GROUND_PLANE;
 }
 
 /* Layers are the CPU's work in either case. */
@@ -364,15 +414,12 @@ static void what_a_device_cannot_do_is_told(void **state)
     const helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_FACE, .spp = 8};
     stage s = make_stage(MATERIALS[0], &desc);
     helio_renderer *renderer;
-    helio_scene *catcher;
-    const helio_scene_desc scene = {.mesh = s.mesh, .ground = HELIO_GROUND_SHADOW};
     (void)state;
-    assert_ok(helio_scene_create(s.context, &scene, &catcher));
     const helio_renderer_desc wrong = {
-        .environment = s.environment, .scene = catcher, .width = 8, .height = 8, .device = s.device};
-    assert_int_equal(helio_renderer_create(s.context, &wrong, &renderer), HELIO_ERR_UNSUPPORTED);
-    assert_non_null(strstr(helio_last_error(), "catcher"));
-    helio_scene_destroy(catcher);
+        .environment = s.environment, .scene = s.scene, .width = 8, .height = 8, .device = s.device};
+    assert_int_equal(renderer_create(s.context, &wrong, &(renderer_extras){.keeps_sums = true}, &renderer),
+                     HELIO_ERR_UNSUPPORTED);
+    assert_non_null(strstr(helio_last_error(), "--backend cpu"));
     assert_int_equal(helio_renderer_render(s.vulkan, &s.frame, NULL), HELIO_ERR_ARGUMENT); /* no map yet */
     destroy_stage(&s);
 }
@@ -605,13 +652,15 @@ static void maps_take_no_memory(void **state)
     destroy_stage(&s);
 }
 
-int main(void)
+/* An argument is a filter for the names of tests. */
+int main(int count, char **arguments)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(strategies_give_the_pictures_of_the_cpu),
         cmocka_unit_test(threads_that_share_a_point_light_it_alike),
         cmocka_unit_test(shadows_fall_where_the_cpu_has_them),
         cmocka_unit_test(rays_of_the_device_see_the_same),
+        cmocka_unit_test(shadows_are_caught_as_on_the_cpu),
         cmocka_unit_test(settings_do_what_they_do_on_the_cpu),
         cmocka_unit_test(sequences_give_the_pictures_of_the_cpu),
         cmocka_unit_test(frames_on_their_way_do_not_mix),
@@ -626,5 +675,7 @@ int main(void)
         cmocka_unit_test(counts_belong_to_their_frames),
         cmocka_unit_test(maps_take_no_memory),
     };
+    if (count > 1)
+        cmocka_set_test_filter(arguments[1]);
     return cmocka_run_group_tests_name("vulkan_render", tests, NULL, NULL);
 }

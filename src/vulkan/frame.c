@@ -23,6 +23,13 @@ static void put_vectors(const vec3 *vectors, int count, float *to)
         vec3_to(vectors[i], to + (size_t)i * 3);
 }
 
+static uint32_t ground_hit(const helio_scene *scene)
+{
+    if (scene->ground == HELIO_GROUND_NONE)
+        return 0;
+    return scene->ground == HELIO_GROUND_SHADOW ? LAYOUT_HIT_CATCHER : LAYOUT_HIT_PLANE;
+}
+
 static struct layout_step describe_step(const struct vulkan_renderer *v, const struct frame *frame, uint32_t seed)
 {
     const helio_renderer_desc *desc = &frame->renderer->desc;
@@ -32,12 +39,13 @@ static struct layout_step describe_step(const struct vulkan_renderer *v, const s
         .materials = v->points.materials.address,
         .picture = v->picture.address,
         .object = v->object.address,
+        .caught = v->caught.address,
         .misses = v->points.misses.address,
         .counts = v->counts.address,
         .origins = v->points.origins.address,
         .nodes = v->nodes.address,
         .triangles = v->triangles.address,
-        .has_ground = desc->scene->ground != HELIO_GROUND_NONE,
+        .ground_hit = ground_hit(desc->scene),
         .intensity = desc->environment->intensity,
         .pool_seed = hash_combine(seed, frame->step.pass),
         .point_seed = frame->step_seed,
@@ -151,7 +159,7 @@ static void add_surfaces(void *data, size_t index)
             helio_shading_point point;
             if (film->surfaces != NULL && frame->step.camera_sample > 0)
                 sums = film->surfaces[pixel];
-            if (renderer->hits.kinds[pixel] != HIT_NOTHING) {
+            if (renderer->hits.kinds[pixel] == HIT_OBJECT || renderer->hits.kinds[pixel] == HIT_PLANE) {
                 shade_point(frame, pixel, (vec3){0, 0, 0}, &point);
                 shade_add_surface(frame, &point, &sums);
             }
@@ -225,7 +233,8 @@ static void record_shading(struct vulkan_renderer *v, vulkan_commands *commands)
     commands_label_end(commands);
 }
 
-static void record_read_back(const struct vulkan_renderer *v, frame_slot *slot, bool wants_picture)
+/* may_stop: of a frame that stops here, sums are wanted. */
+static void record_read_back(const struct vulkan_renderer *v, frame_slot *slot, bool wants_picture, bool may_stop)
 {
     vulkan_commands *commands = &slot->commands;
     commands_copy(commands, &v->counts, &slot->counts_back, sizeof(struct layout_counts));
@@ -234,6 +243,8 @@ static void record_read_back(const struct vulkan_renderer *v, frame_slot *slot, 
         return;
     commands_copy(commands, &v->picture, &v->picture_back, v->picture.bytes);
     commands_copy(commands, &v->object, &v->object_back, v->object.bytes);
+    if (may_stop && v->catches)
+        commands_copy(commands, &v->caught, &v->caught_back, v->caught.bytes);
 }
 
 /* Starts with what the step needs that is not there yet: the tables of the frame, the pools of the pass, the points. */
@@ -269,7 +280,7 @@ static void record_step(struct vulkan_renderer *v, frame_slot *slot, const struc
     marks->pools = commands_mark(commands);
     record_shading(v, commands);
     marks->shaded = commands_mark(commands);
-    record_read_back(v, slot, !desc->no_picture);
+    record_read_back(v, slot, !desc->no_picture, !frame->step.is_last);
     marks->back = commands_mark(commands);
 }
 
@@ -289,18 +300,33 @@ static helio_status run_step(struct vulkan_renderer *v, frame_slot *slot, const 
 
 /* ---- a frame ------------------------------------------------------------------------------ */
 
+/* The sums that the steps have left in a pixel. */
+static film_light sums_of_pixel(const struct vulkan_renderer *v, size_t pixel)
+{
+    const float *rgba = (const float *)v->picture_back.mapped + 4 * pixel;
+    film_light sums = {.covered = (double)rgba[3],
+                       .object = (double)((const float *)v->object_back.mapped)[pixel]};
+    for (int c = 0; c < 3; c++)
+        sums.rgb[c] = (double)rgba[c];
+    if (v->catches) {
+        const float *caught = (const float *)v->caught_back.mapped + 8 * pixel;
+        for (int c = 0; c < 3; c++)
+            sums.catcher_background[c] = (double)caught[c];
+        sums.catcher = (double)caught[3];
+        sums.reaching = (double)caught[4];
+        sums.unoccluded = (double)caught[5];
+    }
+    return sums;
+}
+
 /* What a frame that stopped has in its pixels are sums. */
 static void develop_stopped(helio_renderer *renderer, double weight)
 {
     const struct film *film = &renderer->film;
     const size_t pixels = (size_t)film->width * film->height;
-    const float scale = weight > 0.0 ? (float)(1.0 / weight) : 0.0f;
     for (size_t i = 0; i < pixels; i++) {
-        for (int c = 0; c < 4; c++)
-            film->rgba[4 * i + (size_t)c] *= scale;
-        if (film->shows_background)
-            film->rgba[4 * i + 3] = weight > 0.0 ? 1.0f : 0.0f;
-        film->object[i] *= scale;
+        const film_light sums = sums_of_pixel(renderer->vulkan, i);
+        film_develop_light(&sums, film->shows_background, weight, film->rgba + 4 * i, film->object + i);
         if (film->surfaces != NULL)
             film_develop_surface(film, i, &film->surfaces[i]);
     }

@@ -38,15 +38,23 @@ struct vulkan_renderer {
     vulkan_light light;
     vulkan_points points;
     bool traces;      /* camera rays too; else the CPU does */
+    bool catches;     /* shadows, on the ground */
     struct hits seen; /* what the lists of points belong to, without arrays */
     bool has_points;  /* the lists are those of the step in hand */
     shade_shape shape;
     VkPipeline primary, list_groups, shade, background;
     VkPipeline shade_tiles;                      /* where points that shine weigh tiles; else nothing */
     vulkan_buffer step, counts, picture, object; /* on the device */
-    vulkan_buffer picture_back, object_back;
+    vulkan_buffer caught; /* for a shadow catcher; else nothing, as is: */
+    vulkan_buffer picture_back, object_back, caught_back;
     vulkan_buffer nodes, triangles, normals; /* for rays; else nothing */
 };
+
+/* Is the ground a shadow catcher? */
+static inline bool catches_shadows(const helio_renderer *renderer)
+{
+    return renderer->desc.scene->ground == HELIO_GROUND_SHADOW;
+}
 
 /* Are shadow rays wanted? */
 static inline bool casts_rays(const helio_renderer *renderer)

@@ -5,6 +5,10 @@
 
 #include <string.h>
 
+_Static_assert((int)LAYOUT_HIT_OBJECT == (int)HIT_OBJECT && (int)LAYOUT_HIT_PLANE == (int)HIT_PLANE &&
+                   (int)LAYOUT_HIT_CATCHER == (int)HIT_CATCHER,
+               "what is stored is what shaders know");
+
 static helio_status create_pair(helio_device *device, uint64_t count, uint64_t size, const char *name,
                                 vulkan_buffer *on_device, vulkan_buffer *staging)
 {
@@ -75,11 +79,11 @@ static struct layout_material describe_material(const helio_material *material)
 }
 
 /* See read_origin() in rays.glsl. */
-static void stage_origin(vulkan_points *points, const helio_scene *scene, const hit_surface *surface)
+static void stage_origin(vulkan_points *points, const helio_scene *scene, hit_kind kind, const hit_surface *surface)
 {
     float *to = (float *)points->origins_staging.mapped + 4 * (size_t)points->point_count;
     const scene_shadow shadow = scene_prepare_shadow(scene, surface->position, surface->geometric_normal);
-    const uint32_t known = (shadow.underside ? 1u : 0u) | (shadow.far ? 2u : 0u);
+    const uint32_t known = (shadow.underside ? 1u : 0u) | (shadow.far ? 2u : 0u) | (kind == HIT_CATCHER ? 4u : 0u);
     vec3_to(shadow.origin, to);
     memcpy(to + 3, &known, sizeof known);
 }
@@ -101,7 +105,7 @@ static void stage_point(vulkan_points *points, const struct frame *frame, size_t
     }
     *to = point;
     if (points->casts_rays)
-        stage_origin(points, frame->renderer->desc.scene, surface);
+        stage_origin(points, frame->renderer->desc.scene, (hit_kind)hits->kinds[pixel], surface);
     points->point_count++;
 }
 

@@ -98,12 +98,20 @@ static helio_status create_tree(struct vulkan_renderer *v, const helio_renderer 
     return status;
 }
 
+/* LAYOUT_SHADOWS_... */
+static uint32_t shadows_of(const helio_renderer *renderer)
+{
+    if (catches_shadows(renderer))
+        return LAYOUT_SHADOWS_CAUGHT;
+    return casts_rays(renderer) ? LAYOUT_SHADOWS_CAST : LAYOUT_SHADOWS_NONE;
+}
+
 static helio_status create_shade_tiles(struct vulkan_renderer *v, const helio_renderer *renderer)
 {
     const struct layout_state *state = &v->light.state;
     const uint32_t threads = device_is_software(v->device) ? TILE_THREADS_OF_SOFTWARE : TILE_THREADS;
     const uint32_t kinds = points_kinds(renderer->desc.scene);
-    const pipeline_desc desc = {"shade_tiles", 3, {threads, kinds, casts_rays(renderer)}};
+    const pipeline_desc desc = {"shade_tiles", 3, {threads, kinds, shadows_of(renderer)}};
     if (state->light != LAYOUT_LIGHT_BINS || state->surface != LAYOUT_SURFACE_BRDF || kinds == 1u << LAYOUT_DIFFUSE)
         return HELIO_OK;
     return pipeline_create(v->device, &desc, &v->shade_tiles);
@@ -116,8 +124,8 @@ static helio_status create_passes(struct vulkan_renderer *v, const helio_rendere
     const pipeline_desc shade = {"shade",
                                  7,
                                  {v->shape.threads, v->shape.points, v->shape.lanes, points_kinds(renderer->desc.scene),
-                                  state->light, state->surface, casts_rays(renderer)}};
-    const pipeline_desc background = {"background", 1, {BACKGROUND_THREADS}};
+                                  state->light, state->surface, shadows_of(renderer)}};
+    const pipeline_desc background = {"background", 2, {BACKGROUND_THREADS, shadows_of(renderer)}};
     const pipeline_desc primary = {"primary", 1, {PRIMARY_THREADS}}, list_groups = {"list_groups", 1, {1}};
     if (v->traces)
         HELIO_TRY(pipeline_create(v->device, &primary, &v->primary));
@@ -127,13 +135,17 @@ static helio_status create_passes(struct vulkan_renderer *v, const helio_rendere
     return create_shade_tiles(v, renderer);
 }
 
-static helio_status create_buffers(struct vulkan_renderer *v, uint64_t pixels)
+static helio_status create_buffers(struct vulkan_renderer *v, const helio_renderer *renderer)
 {
+    const uint64_t pixels = (uint64_t)renderer->desc.width * renderer->desc.height;
+    const uint64_t caught = catches_shadows(renderer) ? pixels : 0;
     const uint64_t colour = 4 * sizeof(float), number = sizeof(float), counts = sizeof(struct layout_counts);
     HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, 1, sizeof(struct layout_step), "a step", &v->step));
     HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, 1, counts, "the counts", &v->counts));
     HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, pixels, colour, "the picture", &v->picture));
     HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, pixels, number, "the object's coverage", &v->object));
+    HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, caught, 2 * colour, "the shadow catcher", &v->caught));
+    HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, caught, 2 * colour, "the shadow catcher", &v->caught_back));
     HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, pixels, colour, "the picture", &v->picture_back));
     return buffer_create(v->device, BUFFER_READBACK, pixels, number, "the object's coverage", &v->object_back);
 }
@@ -152,17 +164,13 @@ static helio_status create_parts(struct vulkan_renderer *v, const helio_renderer
     if (!device_is_software(v->device)) /* which is slower at cubes than our own loops on the same processor */
         HELIO_TRY(light_take_maps(&v->light, desc->environment));
     HELIO_TRY(points_create(v->device, desc->scene, casts_rays(renderer), desc->width, desc->height, &v->points));
-    HELIO_TRY(create_buffers(v, (uint64_t)desc->width * desc->height));
+    HELIO_TRY(create_buffers(v, renderer));
     HELIO_TRY(create_tree(v, renderer));
     return create_passes(v, renderer);
 }
 
 static helio_status check(const helio_renderer *renderer)
 {
-    if (renderer->desc.scene->ground == HELIO_GROUND_SHADOW)
-        return fail(HELIO_ERR_UNSUPPORTED,
-                    "graphics processors have no shadow catcher yet; take another ground, or compute "
-                    "on the CPU (--backend cpu)");
     if (renderer->extras.keeps_sums || renderer->extras.lighting != NULL)
         return fail(HELIO_ERR_UNSUPPORTED,
                     "references are not made on graphics processors; compute on the CPU (--backend cpu)");
@@ -183,6 +191,7 @@ helio_status vulkan_renderer_create(helio_renderer *renderer)
         return HELIO_ERR_MEMORY;
     v->context = renderer->context;
     v->device = renderer->desc.device;
+    v->catches = catches_shadows(renderer);
     v->traces = can_trace(renderer->desc.scene) && !renderer->desc.aovs && !renderer->extras.cpu_rays;
     helio_status status = create_parts(v, renderer);
     if (status != HELIO_OK) {
@@ -198,7 +207,7 @@ void vulkan_renderer_destroy(struct vulkan_renderer *v)
     if (v == NULL)
         return;
     vulkan_buffer *const all[] = {&v->step,        &v->counts, &v->picture,   &v->object,  &v->picture_back,
-                                  &v->object_back, &v->nodes,  &v->triangles, &v->normals, NULL};
+                                  &v->object_back, &v->nodes,  &v->triangles, &v->normals, &v->caught, &v->caught_back, NULL};
     for (int i = 0; i < LIGHT_SLOTS; i++) {
         commands_destroy(&v->slots[i].commands);
         buffer_destroy(v->device, &v->slots[i].counts_back);
