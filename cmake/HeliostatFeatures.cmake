@@ -107,7 +107,7 @@ if(HELIO_WITH_VULKAN)
     list(APPEND SOURCES src/vulkan/bins.c src/vulkan/buffer.c src/vulkan/bvh.c src/vulkan/commands.c src/vulkan/copy_rate.c src/vulkan/device.c src/vulkan/device_choice.c
          src/vulkan/frame.c src/vulkan/functions.c src/vulkan/handover.c
          src/vulkan/light.c src/vulkan/map.c src/vulkan/pipeline.c src/vulkan/points.c
-         src/vulkan/pools.c src/vulkan/renderer.c src/vulkan/tables.c)
+         src/vulkan/pools.c src/vulkan/renderer.c src/vulkan/tables.c src/vulkan/textures.c)
     list(APPEND FEATURE_DEFINITIONS HELIO_WITH_VULKAN=1)
     list(APPEND FEATURE_LIBRARIES ${CMAKE_DL_LIBS})
 else()

@@ -59,6 +59,13 @@
 #define LAYOUT_STREAM_WINDOW 3
 #define LAYOUT_STREAM_BIN 4
 
+/* helio_wrap, and where the curve of a kind of texture begins among all. */
+#define LAYOUT_WRAP_REPEAT 0
+#define LAYOUT_WRAP_CLAMP 1
+#define LAYOUT_WRAP_MIRROR 2
+#define LAYOUT_CURVE_SRGB 0
+#define LAYOUT_CURVE_LINEAR 256
+
 /* What camera rays meet, see hits.h. */
 #define LAYOUT_MATERIAL_OBJECT 0 /* of all points; those of single points or triangles come behind */
 #define LAYOUT_MATERIAL_GROUND 1
@@ -95,7 +102,13 @@ struct layout_material {
     FLOAT exponent;
     FLOAT metallic;
     FLOAT roughness;
-    UINT padding[2];
+    UINT base_colour, metallic_roughness; /* see helio_material_textures; of materials of triangles */
+};
+
+/* Where the texels of a texture begin among all. */
+struct layout_texture {
+    UINT first, width, height;
+    UINT wraps; /* helio_wrap of u, and << 2 of v */
 };
 
 /* What a camera ray met. */
@@ -175,6 +188,10 @@ layout(buffer_reference, std430, buffer_reference_align = 4) buffer faults_of_ma
 {
     layout_faults all;
 };
+layout(buffer_reference, std430, buffer_reference_align = 4) buffer shapes_of_textures
+{
+    layout_texture at[];
+};
 layout(buffer_reference, std430, buffer_reference_align = 4) buffer large_texels
 {
     layout_large at[];
@@ -182,6 +199,23 @@ layout(buffer_reference, std430, buffer_reference_align = 4) buffer large_texels
 layout(buffer_reference, std430, buffer_reference_align = 16) buffer patches_of_map
 {
     layout_patch at[];
+};
+#endif
+
+/* The textures of a mesh. */
+struct layout_textures {
+    ADDRESS(uints, texels);               /* as bytes red, green, blue, alpha */
+    ADDRESS(floats, curves);              /* [2][256]: what the bytes stand for */
+    ADDRESS(floats, coordinates);         /* [triangles][3][2] */
+    ADDRESS(shapes_of_textures, shapes);
+    UINT point_materials;                 /* where those of single points begin, behind those of the mesh */
+    UINT padding;
+};
+
+#ifdef VULKAN
+layout(buffer_reference, std430, buffer_reference_align = 8) buffer textures_of_mesh
+{
+    layout_textures all;
 };
 #endif
 
@@ -235,6 +269,8 @@ struct layout_step {
     ADDRESS(vectors, nodes);    /* [...][4]: struct bvh_node */
     ADDRESS(vectors, triangles); /* [...][3] */
     ADDRESS(vectors, normals);  /* [...][4]: of a triangle's plane and of its corners */
+    ADDRESS(textures_of_mesh, textures); /* nothing where there are none */
+    ADDRESS(vectors, surfaces); /* [height][width][3]: see primary.comp; nothing where layers are not wanted */
     ADDRESS(uints, counts_of_lists); /* [2]: points and misses */
     ADDRESS(uints, groups_of_lists); /* [3][3]: work groups for points, for points one by one, for misses */
     FLOAT map_axes[9];     /* see environment.h */
@@ -286,7 +322,7 @@ struct layout_push {
 _Static_assert(sizeof(struct layout_sums) == 176, "as in the shaders");
 _Static_assert(sizeof(struct layout_material) == 48 && sizeof(struct layout_point) == 48, "as in the shaders");
 _Static_assert(sizeof(struct layout_state) == 24 * 8 + 18 * 4, "as in the shaders");
-_Static_assert(sizeof(struct layout_step) == 13 * 8 + 56 * 4, "as in the shaders");
+_Static_assert(sizeof(struct layout_step) == 15 * 8 + 56 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_map) == 6 * 8 + 6 * 4 + LAYOUT_VIEWS * 20, "as in the shaders");
 _Static_assert(sizeof(struct layout_push) == 32, "as in the shaders");
 #endif

@@ -54,6 +54,8 @@ static struct layout_step describe_step(const struct vulkan_renderer *v, const s
         .brdf_share = desc->brdf_share != 0.0f ? desc->brdf_share : DEFAULT_BRDF_SHARE,
         .no_beta = desc->no_beta,
         .normals = v->normals.address,
+        .textures = v->textures.all.address,
+        .surfaces = v->surfaces.address,
         .counts_of_lists = v->points.counts.address,
         .groups_of_lists = v->points.groups.address,
         .camera = {[12] = frame->camera.tan_half_fov, [13] = frame->camera.aspect},
@@ -195,6 +197,7 @@ static helio_status find_points(helio_renderer *renderer, struct frame *frame, b
     v->seen.complete = false;
     if (!v->traces)
         HELIO_TRY(trace_on_cpu(renderer, frame));
+    v->has_new_surfaces = finds_layers(v, renderer);
     v->seen.camera = frame->camera;
     v->seen.complete = renderer->desc.aa == 1;
     info->camera_rays += (uint64_t)renderer->desc.width * renderer->desc.height;
@@ -245,6 +248,8 @@ static void record_read_back(const struct vulkan_renderer *v, frame_slot *slot, 
     commands_copy(commands, &v->object, &v->object_back, v->object.bytes);
     if (may_stop && v->catches)
         commands_copy(commands, &v->caught, &v->caught_back, v->caught.bytes);
+    if (v->has_new_surfaces)
+        commands_copy(commands, &v->surfaces, &v->surfaces_back, v->surfaces.bytes);
 }
 
 /* Starts with what the step needs that is not there yet: the tables of the frame, the pools of the pass, the points. */
@@ -304,8 +309,7 @@ static helio_status run_step(struct vulkan_renderer *v, frame_slot *slot, const 
 static film_light sums_of_pixel(const struct vulkan_renderer *v, size_t pixel)
 {
     const float *rgba = (const float *)v->picture_back.mapped + 4 * pixel;
-    film_light sums = {.covered = (double)rgba[3],
-                       .object = (double)((const float *)v->object_back.mapped)[pixel]};
+    film_light sums = {.covered = (double)rgba[3], .object = (double)((const float *)v->object_back.mapped)[pixel]};
     for (int c = 0; c < 3; c++)
         sums.rgb[c] = (double)rgba[c];
     if (v->catches) {
@@ -332,15 +336,39 @@ static void develop_stopped(helio_renderer *renderer, double weight)
     }
 }
 
-static void take_picture(helio_renderer *renderer, const struct frame *frame, bool has_stopped)
+/* The layers of a tile, of which the device has the sums. */
+static void take_surfaces(void *data, size_t index)
 {
-    const struct vulkan_renderer *v = renderer->vulkan;
+    const struct frame *frame = data;
+    const struct film *film = &frame->renderer->film;
+    const float *all = frame->renderer->vulkan->surfaces_back.mapped;
+    const struct tile tile = frame_tile(frame, index);
+    for (uint32_t y = tile.y0; y < tile.y1; y++)
+        for (uint32_t x = tile.x0; x < tile.x1; x++) {
+            const size_t pixel = (size_t)y * film->width + x;
+            const float *sums = all + 12 * pixel;
+            film_surface surface = {.count = (double)sums[3], .depth = (double)sums[7]};
+            for (size_t c = 0; c < 3; c++) {
+                surface.albedo[c] = (double)sums[c];
+                surface.normal[c] = (double)sums[4 + c];
+                surface.position[c] = (double)sums[8 + c];
+            }
+            film_develop_surface(film, pixel, &surface);
+        }
+}
+
+static void take_picture(helio_renderer *renderer, struct frame *frame, bool has_stopped)
+{
+    struct vulkan_renderer *v = renderer->vulkan;
     const struct film *film = &renderer->film;
     const size_t pixels = (size_t)film->width * film->height;
     memcpy(film->rgba, v->picture_back.mapped, pixels * 4 * sizeof *film->rgba);
     memcpy(film->object, v->object_back.mapped, pixels * sizeof *film->object);
     if (has_stopped && !frame->step.is_last)
         develop_stopped(renderer, frame->weight);
+    if (v->has_new_surfaces)
+        context_parallel_for(renderer->context, frame->tile_count, take_surfaces, frame);
+    v->has_new_surfaces = false;
 }
 
 /* All steps but the last are waited for, so that progress can be told. */

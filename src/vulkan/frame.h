@@ -6,6 +6,7 @@
 #include "vulkan/light.h"
 #include "vulkan/points.h"
 #include "vulkan/renderer.h"
+#include "vulkan/textures.h"
 
 enum { PRIMARY_EDGE = 8, BACKGROUND_THREADS = 64 }; /* pixels of a work group: along its edges; in a row */
 
@@ -45,10 +46,19 @@ struct vulkan_renderer {
     VkPipeline primary, list_groups, shade, background;
     VkPipeline shade_tiles;                      /* where points that shine weigh tiles; else nothing */
     vulkan_buffer step, counts, picture, object; /* on the device */
-    vulkan_buffer caught; /* for a shadow catcher; else nothing, as is: */
+    vulkan_buffer caught;                        /* for a shadow catcher; else nothing, as is: */
     vulkan_buffer picture_back, object_back, caught_back;
     vulkan_buffer nodes, triangles, normals; /* for rays; else nothing */
+    vulkan_textures textures;                /* for camera rays; else nothing */
+    vulkan_buffer surfaces, surfaces_back;   /* for layers found by the device; else nothing */
+    bool has_new_surfaces;                   /* which are not in the picture yet */
 };
+
+/* Does the device find the layers of the picture? */
+static inline bool finds_layers(const struct vulkan_renderer *v, const helio_renderer *renderer)
+{
+    return v->traces && renderer->desc.aovs;
+}
 
 /* Is the ground a shadow catcher? */
 static inline bool catches_shadows(const helio_renderer *renderer)

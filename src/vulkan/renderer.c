@@ -92,6 +92,8 @@ static helio_status create_tree(struct vulkan_renderer *v, const helio_renderer 
     helio_status status = upload_tree(v, &tree);
     if (status == HELIO_OK && v->traces)
         status = upload_normals(v, renderer, &tree);
+    if (status == HELIO_OK && v->traces && textures_are_seen(renderer->desc.scene))
+        status = textures_create(&v->slots[0].commands, renderer->desc.scene, &tree, &v->textures);
     bvh_destroy(&tree);
     if (status == HELIO_OK && v->traces)
         status = points_upload_materials(&v->points, &v->slots[0].commands, renderer->desc.scene);
@@ -126,7 +128,9 @@ static helio_status create_passes(struct vulkan_renderer *v, const helio_rendere
                                  {v->shape.threads, v->shape.points, v->shape.lanes, points_kinds(renderer->desc.scene),
                                   state->light, state->surface, shadows_of(renderer)}};
     const pipeline_desc background = {"background", 2, {BACKGROUND_THREADS, shadows_of(renderer)}};
-    const pipeline_desc primary = {"primary", 1, {PRIMARY_THREADS}}, list_groups = {"list_groups", 1, {1}};
+    const pipeline_desc primary = {
+        "primary", 3, {PRIMARY_THREADS, textures_are_seen(renderer->desc.scene), finds_layers(v, renderer)}};
+    const pipeline_desc list_groups = {"list_groups", 1, {1}};
     if (v->traces)
         HELIO_TRY(pipeline_create(v->device, &primary, &v->primary));
     HELIO_TRY(pipeline_create(v->device, &list_groups, &v->list_groups));
@@ -138,7 +142,7 @@ static helio_status create_passes(struct vulkan_renderer *v, const helio_rendere
 static helio_status create_buffers(struct vulkan_renderer *v, const helio_renderer *renderer)
 {
     const uint64_t pixels = (uint64_t)renderer->desc.width * renderer->desc.height;
-    const uint64_t caught = catches_shadows(renderer) ? pixels : 0;
+    const uint64_t caught = catches_shadows(renderer) ? pixels : 0, layers = finds_layers(v, renderer) ? pixels : 0;
     const uint64_t colour = 4 * sizeof(float), number = sizeof(float), counts = sizeof(struct layout_counts);
     HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, 1, sizeof(struct layout_step), "a step", &v->step));
     HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, 1, counts, "the counts", &v->counts));
@@ -146,6 +150,8 @@ static helio_status create_buffers(struct vulkan_renderer *v, const helio_render
     HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, pixels, number, "the object's coverage", &v->object));
     HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, caught, 2 * colour, "the shadow catcher", &v->caught));
     HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, caught, 2 * colour, "the shadow catcher", &v->caught_back));
+    HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, layers, 3 * colour, "the layers", &v->surfaces));
+    HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, layers, 3 * colour, "the layers", &v->surfaces_back));
     HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, pixels, colour, "the picture", &v->picture_back));
     return buffer_create(v->device, BUFFER_READBACK, pixels, number, "the object's coverage", &v->object_back);
 }
@@ -177,12 +183,6 @@ static helio_status check(const helio_renderer *renderer)
     return HELIO_OK;
 }
 
-/* Textures are the CPU's. */
-static bool can_trace(const helio_scene *scene)
-{
-    return !scene->own_materials || scene->mesh->texture_count == 0;
-}
-
 helio_status vulkan_renderer_create(helio_renderer *renderer)
 {
     HELIO_TRY(check(renderer));
@@ -192,7 +192,7 @@ helio_status vulkan_renderer_create(helio_renderer *renderer)
     v->context = renderer->context;
     v->device = renderer->desc.device;
     v->catches = catches_shadows(renderer);
-    v->traces = can_trace(renderer->desc.scene) && !renderer->desc.aovs && !renderer->extras.cpu_rays;
+    v->traces = !renderer->extras.cpu_rays;
     helio_status status = create_parts(v, renderer);
     if (status != HELIO_OK) {
         vulkan_renderer_destroy(v);
@@ -206,8 +206,9 @@ void vulkan_renderer_destroy(struct vulkan_renderer *v)
 {
     if (v == NULL)
         return;
-    vulkan_buffer *const all[] = {&v->step,        &v->counts, &v->picture,   &v->object,  &v->picture_back,
-                                  &v->object_back, &v->nodes,  &v->triangles, &v->normals, &v->caught, &v->caught_back, NULL};
+    vulkan_buffer *const all[] = {&v->step,        &v->counts,   &v->picture,       &v->object,  &v->picture_back,
+                                  &v->object_back, &v->nodes,    &v->triangles,     &v->normals, &v->caught,
+                                  &v->caught_back, &v->surfaces, &v->surfaces_back, NULL};
     for (int i = 0; i < LIGHT_SLOTS; i++) {
         commands_destroy(&v->slots[i].commands);
         buffer_destroy(v->device, &v->slots[i].counts_back);
@@ -220,6 +221,7 @@ void vulkan_renderer_destroy(struct vulkan_renderer *v)
     pipeline_destroy(v->device, &v->list_groups);
     pipeline_destroy(v->device, &v->shade_tiles);
     points_destroy(&v->points);
+    textures_destroy(&v->textures);
     light_destroy(&v->light);
     context_release(v->context, v);
 }
