@@ -513,6 +513,32 @@ static void what_a_device_cannot_do_is_told(void **state)
     destroy_stage(&s);
 }
 
+static VkResult VKAPI_CALL lose_submit(VkQueue queue, uint32_t count, const VkSubmitInfo *infos, VkFence fence)
+{
+    (void)queue;
+    (void)count;
+    (void)infos;
+    (void)fence;
+    return VK_ERROR_DEVICE_LOST;
+}
+
+/* The program's frames: test_vulkan_program. */
+static void a_lost_device_is_told_and_the_picture_stays(void **state)
+{
+    const helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_FACE, .spp = 4, .pool_length = 64};
+    stage s = make_stage(MATERIALS[0], &desc);
+    (void)state;
+    light_stage_with(&s, 1);
+    expect_same(&s, ROUNDING, "the frame before");
+    s.device->vk.QueueSubmit = lose_submit;
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(helio_renderer_render(s.vulkan, &s.frame, NULL), HELIO_ERR_DEVICE);
+        assert_non_null(strstr(helio_last_error(), "the device was lost"));
+    }
+    assert_int_equal(compare_pictures(&s, ROUNDING).off, 0);
+    destroy_stage(&s);
+}
+
 /* Pictures and cubes of odd and least sizes, strategies that follow each other, two renderers at once. */
 static void renderers_come_and_go_on_a_device(void **state)
 {
@@ -758,6 +784,7 @@ int main(int count, char **arguments)
         cmocka_unit_test(black_maps_give_black_pictures),
         cmocka_unit_test(frames_stop_when_told_to),
         cmocka_unit_test(what_a_device_cannot_do_is_told),
+        cmocka_unit_test(a_lost_device_is_told_and_the_picture_stays),
         cmocka_unit_test(renderers_come_and_go_on_a_device),
         cmocka_unit_test(frames_take_no_memory),
         cmocka_unit_test(memory_stays_flat),
