@@ -63,8 +63,8 @@ static helio_status upload_coordinates(vulkan_textures *textures, vulkan_command
         return HELIO_ERR_MEMORY;
     const uint64_t bytes = tree->triangle_count * sizeof *coordinates;
     fill_coordinates(mesh, tree, coordinates);
-    helio_status status = buffer_create(commands->device, BUFFER_ON_DEVICE, bytes, 1, "the texture coordinates",
-                                        &textures->coordinates);
+    helio_status status =
+        buffer_create(commands->device, BUFFER_ON_DEVICE, bytes, 1, "the texture coordinates", &textures->coordinates);
     if (status == HELIO_OK)
         status = commands_upload(commands, &textures->coordinates, coordinates, bytes);
     context_release(tree->context, coordinates);
