@@ -74,6 +74,8 @@
 #define LAYOUT_HIT_PLANE 2
 #define LAYOUT_HIT_CATCHER 3
 
+#define LAYOUT_NOTHING_SEEN 0xffffffffu /* in place of a triangle */
+
 /* What becomes of light that something is in the way of, a constant of pipelines: nothing, as it passes; shadows; shadows
  * which are all that is seen of the ground. */
 #define LAYOUT_SHADOWS_NONE 0
@@ -271,6 +273,7 @@ struct layout_step {
     ADDRESS(vectors, normals);  /* [...][4]: of a triangle's plane and of its corners */
     ADDRESS(textures_of_mesh, textures); /* nothing where there are none */
     ADDRESS(vectors, surfaces); /* [height][width][3]: see primary.comp; nothing where layers are not wanted */
+    ADDRESS(uints, seen);       /* [height][width]: see raster.h; nothing where camera rays are traced */
     ADDRESS(uints, counts_of_lists); /* [2]: points and misses */
     ADDRESS(uints, groups_of_lists); /* [3][3]: work groups for points, for points one by one, for misses */
     FLOAT map_axes[9];     /* see environment.h */
@@ -322,7 +325,7 @@ struct layout_push {
 _Static_assert(sizeof(struct layout_sums) == 176, "as in the shaders");
 _Static_assert(sizeof(struct layout_material) == 48 && sizeof(struct layout_point) == 48, "as in the shaders");
 _Static_assert(sizeof(struct layout_state) == 24 * 8 + 18 * 4, "as in the shaders");
-_Static_assert(sizeof(struct layout_step) == 15 * 8 + 56 * 4, "as in the shaders");
+_Static_assert(sizeof(struct layout_step) == 16 * 8 + 56 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_map) == 6 * 8 + 6 * 4 + LAYOUT_VIEWS * 20, "as in the shaders");
 _Static_assert(sizeof(struct layout_push) == 32, "as in the shaders");
 #endif

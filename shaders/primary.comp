@@ -7,6 +7,7 @@
 
 layout(constant_id = 1) const uint HAS_TEXTURES = 0u;
 layout(constant_id = 2) const uint HAS_LAYERS = 0u; // the picture has albedo, normal, position and depth
+layout(constant_id = 3) const uint IS_DRAWN = 0u; // the rasteriser has found the triangles
 const uint VISIBILITY = LAYOUT_SHADOWS_CAST, EDGE = 8u;
 
 #include "random.glsl"
@@ -86,6 +87,20 @@ nearest_hit find_nearest(vec3 origin, vec3 direction)
     }
 }
 
+// The same for the ray through the centre of a pixel. The rasteriser rounds the places of corners to parts of a pixel: where
+// the ray misses the triangle that it found, at an edge, all are asked.
+nearest_hit find_seen(vec3 origin, vec3 direction, uint pixel)
+{
+    if (IS_DRAWN == 0u)
+        return find_nearest(origin, direction);
+    const uint triangle = STEP.seen.at[min(pixel, STEP.width * STEP.height - 1u)];
+    const bool is_nothing = triangle == LAYOUT_NOTHING_SEEN;
+    triangle_meeting at;
+    if (meets_triangle(begin_ray(origin, direction), is_nothing ? 0u : triangle, at) && !is_nothing)
+        return nearest_hit(triangle, at.weights, at.distance);
+    return is_nothing ? nearest_hit(0u, vec3(0.0), 1e38) : find_nearest(origin, direction);
+}
+
 surface_hit resolve(nearest_hit hit, vec3 direction)
 {
     const vec3 weights = hit.weights;
@@ -117,11 +132,11 @@ surface_hit meet_ground(vec3 origin, vec3 direction)
 }
 
 // The whole mesh stands on the plane: from below the plane comes first, and from above the mesh does.
-surface_hit meet(vec3 origin, vec3 direction)
+surface_hit meet(vec3 origin, vec3 direction, uint pixel)
 {
     const bool has_ground = STEP.ground_hit != 0u, below = has_ground && origin.y < STEP.ground_height;
     if (!below) {
-        const nearest_hit hit = find_nearest(origin, direction);
+        const nearest_hit hit = find_seen(origin, direction, pixel);
         if (hit.distance < 1e38)
             return resolve(hit, direction);
     }
@@ -206,7 +221,7 @@ void main()
     barrier();
     if (is_inside) {
         direction = camera_direction(position_of(pixel));
-        hit = meet(camera_vector(0u), direction);
+        hit = meet(camera_vector(0u), direction, pixel);
     }
     const uint list = hit.kind != 0u ? 0u : 1u;
     const uint place = is_inside ? atomicAdd(own_counts[list], 1u) : 0u;

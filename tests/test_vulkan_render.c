@@ -5,6 +5,7 @@
 
 #include "cpu/renderer.h"
 #include "env/environment.h"
+#include "vulkan/frame.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -26,7 +27,7 @@ typedef struct stage {
 } stage;
 
 /* Whether devices are taken for hardware, so that several threads share a point; whether shadow rays are traced. */
-static bool plays_hardware, casts_rays;
+static bool plays_hardware, casts_shadows;
 
 /* Whether the device traces camera rays. The CPU's points are the same to the bit, so that their light can be compared
  * more closely. */
@@ -95,7 +96,7 @@ static stage make_stage(const char *material, const helio_renderer_desc *given)
     desc.scene = s.scene;
     desc.width = WIDTH;
     desc.height = HEIGHT;
-    desc.no_visibility = !casts_rays;
+    desc.no_visibility = !casts_shadows;
     assert_ok(helio_renderer_create(s.context, &desc, &s.cpu));
     desc.device = s.device;
     assert_ok(renderer_create(s.context, &desc, &(renderer_extras){.cpu_rays = !traces}, &s.vulkan));
@@ -219,10 +220,10 @@ static void threads_that_share_a_point_light_it_alike(void **state)
 static void shadows_fall_where_the_cpu_has_them(void **state)
 {
     (void)state;
-    casts_rays = true;
+    casts_shadows = true;
     compare_strategy(HELIO_STRATEGY_FACE_BRDF, MATERIALS[1]);
     compare_strategy(HELIO_STRATEGY_PRODUCT_BRDF, MATERIALS[2]);
-    casts_rays = false;
+    casts_shadows = false;
 }
 
 /* Points of the device's own rays are the CPU's but for rounding, by which some count, bin or texel comes out
@@ -234,7 +235,7 @@ static void rays_of_the_device_see_the_same(void **state)
         {.spp = 64},
     };
     (void)state;
-    traces = casts_rays = true;
+    traces = casts_shadows = true;
     for (size_t i = 0; i < 2; i++) {
         stage s = make_stage(MATERIALS[1 + i], &descs[i]);
         helio_frame_info cpu, vulkan;
@@ -247,7 +248,7 @@ static void rays_of_the_device_see_the_same(void **state)
         assert_true(d.off <= d.count / 10 && d.mean < 1e-3);
         destroy_stage(&s);
     }
-    traces = casts_rays = false;
+    traces = casts_shadows = false;
 }
 
 /* Pixels whose layers are not those of the CPU: rays that graze the sphere magnify rounding (found: 7e-5), and at an
@@ -296,6 +297,38 @@ static void textures_and_layers_are_those_of_the_cpu(void **state)
     traces = false;
 }
 
+/* Through the centres of pixels the rasteriser sees what rays meet, but where an edge passes within 1/256 of a pixel.
+ */
+static void the_rasteriser_sees_what_rays_meet(void **state)
+{
+    static const helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_FACE, .spp = 8, .aovs = true};
+    static const char *const ways[] = {"raster", "auto"};
+    (void)state;
+    traces = true;
+    for (size_t i = 0; i < 2; i++) {
+        setenv("HELIOSTAT_VULKAN_PRIMARY", ways[i], 1);
+        plays_hardware = i == 1;
+        stage s = make_stage(NULL, &desc);
+        helio_frame_info cpu, vulkan;
+        light_stage_with(&s, 17);
+        for (size_t view = i; view < 3; view += 1 + i) {
+            static const char *const cameras[] = {"auto", "orbit:azimuth=70", "lookat:eye=0.3,0.1,0.2,fov=70"};
+            assert_ok(helio_camera_parse(cameras[view], s.mesh, (float)WIDTH / HEIGHT, &s.frame.camera));
+            render_both(&s, &cpu, &vulkan);
+            const difference d = compare_pictures(&s, ROUNDING);
+            const uint32_t layers_off = count_layers_off(&s);
+            print_message("%s: mean %.2e, worst %.2e, %u of %u pixels off, %u of their layers\n", ways[i], d.mean,
+                          d.worst, d.off, d.count, layers_off);
+            assert_true(d.off <= d.count / 50 && d.mean < 1e-4 && layers_off <= 4);
+        }
+        assert_true(s.vulkan->vulkan->raster.device != NULL && s.vulkan->vulkan->way != PRIMARY_BY_FASTER);
+        assert_true(i == 1 || s.vulkan->vulkan->way == PRIMARY_BY_RASTER);
+        destroy_stage(&s);
+    }
+    unsetenv("HELIOSTAT_VULKAN_PRIMARY");
+    traces = plays_hardware = false;
+}
+
 static double greatest_alpha_of_ground(const stage *s)
 {
     const helio_picture picture = helio_renderer_picture(s->vulkan);
@@ -321,7 +354,7 @@ static void shadows_are_caught_as_on_the_cpu(void **state)
     };
     (void)state;
     ground = HELIO_GROUND_SHADOW;
-    casts_rays = true;
+    casts_shadows = true;
     for (size_t i = 0; i < 2; i++) {
         helio_frame_info cpu, vulkan;
         traces = plays_hardware = i == 1;
@@ -339,7 +372,7 @@ static void shadows_are_caught_as_on_the_cpu(void **state)
         assert_true(compare_pictures(&s, ROUNDING).off <= (traces ? d.count / 10 : 0));
         destroy_stage(&s);
     }
-    traces = casts_rays = plays_hardware = false;
+    traces = casts_shadows = plays_hardware = false;
     ground = HELIO_GROUND_PLANE;
 }
 
@@ -776,6 +809,7 @@ int main(int count, char **arguments)
         cmocka_unit_test(shadows_fall_where_the_cpu_has_them),
         cmocka_unit_test(rays_of_the_device_see_the_same),
         cmocka_unit_test(textures_and_layers_are_those_of_the_cpu),
+        cmocka_unit_test(the_rasteriser_sees_what_rays_meet),
         cmocka_unit_test(shadows_are_caught_as_on_the_cpu),
         cmocka_unit_test(settings_do_what_they_do_on_the_cpu),
         cmocka_unit_test(sequences_give_the_pictures_of_the_cpu),

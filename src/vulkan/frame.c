@@ -56,6 +56,7 @@ static struct layout_step describe_step(const struct vulkan_renderer *v, const s
         .normals = v->normals.address,
         .textures = v->textures.all.address,
         .surfaces = v->surfaces.address,
+        .seen = v->raster.seen.address,
         .counts_of_lists = v->points.counts.address,
         .groups_of_lists = v->points.groups.address,
         .camera = {[12] = frame->camera.tan_half_fov, [13] = frame->camera.aspect},
@@ -207,15 +208,52 @@ static helio_status find_points(helio_renderer *renderer, struct frame *frame, b
 
 /* ---- a step ------------------------------------------------------------------------------- */
 
+static void record_primary(struct vulkan_renderer *v, const helio_renderer_desc *desc, vulkan_commands *commands,
+                           primary_way way)
+{
+    const struct layout_push push = light_push(&v->light, v->step.address, 0);
+    const uint64_t across = (desc->width + PRIMARY_EDGE - 1) / PRIMARY_EDGE;
+    const uint64_t down = (desc->height + PRIMARY_EDGE - 1) / PRIMARY_EDGE;
+    if (way == PRIMARY_BY_RASTER)
+        raster_record(&v->raster, commands, &push);
+    commands_dispatch(commands, way == PRIMARY_BY_RASTER ? v->primary_drawn : v->primary, &push, across * down);
+}
+
+/* Finds out which way is faster, by trying both twice: the first time is a warm-up. */
+static helio_status choose_way(struct vulkan_renderer *v, frame_slot *slot, const struct frame *frame,
+                               const helio_frame_desc *desc)
+{
+    static const primary_way ways[2] = {PRIMARY_BY_RAYS, PRIMARY_BY_RASTER};
+    vulkan_commands *commands = &slot->commands;
+    const struct layout_step step = describe_step(v, frame, desc->seed);
+    uint32_t starts[2], ends[2];
+    HELIO_TRY(commands_begin(commands));
+    commands_write(commands, &v->step, &step, sizeof step);
+    for (int i = 0; i < 4; i++) {
+        commands_clear(commands, &v->points.counts);
+        commands_barrier(commands);
+        starts[i % 2] = commands_mark(commands);
+        record_primary(v, &frame->renderer->desc, commands, ways[i % 2]);
+        commands_barrier(commands);
+        ends[i % 2] = commands_mark(commands);
+    }
+    HELIO_TRY(commands_submit(commands));
+    HELIO_TRY(commands_wait(commands));
+    const double by_rays = commands_milliseconds(commands, starts[0], ends[0]);
+    const double by_raster = commands_milliseconds(commands, starts[1], ends[1]);
+    v->way = by_raster < by_rays ? PRIMARY_BY_RASTER : PRIMARY_BY_RAYS;
+    context_log(v->context, HELIO_LOG_INFO, "camera rays: %.3f ms by rays, %.3f ms by the rasteriser", by_rays,
+                by_raster);
+    return HELIO_OK;
+}
+
 /* The lists of points and misses: found by the device, or by the CPU and on their way. */
 static void record_lists(struct vulkan_renderer *v, const helio_renderer_desc *desc, vulkan_commands *commands)
 {
     const struct layout_push push = light_push(&v->light, v->step.address, BACKGROUND_THREADS);
-    const uint64_t across = (desc->width + PRIMARY_EDGE - 1) / PRIMARY_EDGE;
-    const uint64_t down = (desc->height + PRIMARY_EDGE - 1) / PRIMARY_EDGE;
     commands_label(commands, "camera rays");
     if (v->traces)
-        commands_dispatch(commands, v->primary, &push, across * down);
+        record_primary(v, desc, commands, v->way);
     commands_barrier(commands);
     commands_dispatch(commands, v->list_groups, &push, 1);
     commands_barrier(commands);
@@ -293,6 +331,8 @@ static helio_status run_step(struct vulkan_renderer *v, frame_slot *slot, const 
                              const helio_frame_desc *desc)
 {
     const bool is_new_pass = frame->step.pass == slot->info.passes;
+    if (v->way == PRIMARY_BY_FASTER)
+        HELIO_TRY(choose_way(v, slot, frame, desc));
     HELIO_TRY(commands_begin(&slot->commands));
     record_step(v, slot, frame, desc, is_new_pass);
     HELIO_TRY(commands_submit_between(&slot->commands, frame->step.is_first ? light_sent(&v->light) : VK_NULL_HANDLE,

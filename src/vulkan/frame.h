@@ -3,8 +3,10 @@
 #ifndef HELIOSTAT_SRC_VULKAN_FRAME_H
 #define HELIOSTAT_SRC_VULKAN_FRAME_H
 
+#include "vulkan/device_choice.h"
 #include "vulkan/light.h"
 #include "vulkan/points.h"
+#include "vulkan/raster.h"
 #include "vulkan/renderer.h"
 #include "vulkan/textures.h"
 
@@ -44,6 +46,9 @@ struct vulkan_renderer {
     bool has_points;  /* the lists are those of the step in hand */
     shade_shape shape;
     VkPipeline primary, list_groups, shade, background;
+    primary_way way;                             /* how camera rays find triangles */
+    vulkan_raster raster;                        /* where that is not by rays; else nothing, as is: */
+    VkPipeline primary_drawn;                    /* for triangles that the rasteriser found */
     VkPipeline shade_tiles;                      /* where points that shine weigh tiles; else nothing */
     vulkan_buffer step, counts, picture, object; /* on the device */
     vulkan_buffer caught;                        /* for a shadow catcher; else nothing, as is: */

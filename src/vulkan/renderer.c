@@ -119,6 +119,23 @@ static helio_status create_shade_tiles(struct vulkan_renderer *v, const helio_re
     return pipeline_create(v->device, &desc, &v->shade_tiles);
 }
 
+/* The rasteriser looks through the centres of pixels only. The clock of software does not wait for computing, so that
+ * nothing can be measured there. */
+static helio_status create_raster(struct vulkan_renderer *v, const helio_renderer *renderer, pipeline_desc primary)
+{
+    const helio_renderer_desc *desc = &renderer->desc;
+    const primary_way way = device_choice_primary();
+    if (way == PRIMARY_BY_FASTER && device_is_software(v->device))
+        return HELIO_OK;
+    if (way == PRIMARY_BY_RAYS || !v->traces || desc->aa != 1 ||
+        !raster_is_possible(v->device, desc->width, desc->height))
+        return HELIO_OK;
+    primary.constants[primary.constant_count++] = true;
+    v->way = way;
+    HELIO_TRY(raster_create(v->device, desc->width, desc->height, desc->scene->mesh->triangle_count, &v->raster));
+    return pipeline_create(v->device, &primary, &v->primary_drawn);
+}
+
 static helio_status create_passes(struct vulkan_renderer *v, const helio_renderer *renderer)
 {
     const struct layout_state *state = &v->light.state;
@@ -133,6 +150,7 @@ static helio_status create_passes(struct vulkan_renderer *v, const helio_rendere
     const pipeline_desc list_groups = {"list_groups", 1, {1}};
     if (v->traces)
         HELIO_TRY(pipeline_create(v->device, &primary, &v->primary));
+    HELIO_TRY(create_raster(v, renderer, primary));
     HELIO_TRY(pipeline_create(v->device, &list_groups, &v->list_groups));
     HELIO_TRY(pipeline_create(v->device, &shade, &v->shade));
     HELIO_TRY(pipeline_create(v->device, &background, &v->background));
@@ -218,6 +236,8 @@ void vulkan_renderer_destroy(struct vulkan_renderer *v)
     pipeline_destroy(v->device, &v->shade);
     pipeline_destroy(v->device, &v->background);
     pipeline_destroy(v->device, &v->primary);
+    pipeline_destroy(v->device, &v->primary_drawn);
+    raster_destroy(&v->raster);
     pipeline_destroy(v->device, &v->list_groups);
     pipeline_destroy(v->device, &v->shade_tiles);
     points_destroy(&v->points);
