@@ -297,6 +297,20 @@ static void textures_and_layers_are_those_of_the_cpu(void **state)
     traces = false;
 }
 
+/* The rasteriser has found a triangle where a pixel is of the object, and none elsewhere. */
+static void expect_drawn(const stage *s)
+{
+    struct vulkan_renderer *v = s->vulkan->vulkan;
+    const helio_picture picture = helio_renderer_picture(s->vulkan);
+    uint32_t *seen = read_buffer(&v->slots[0].commands, &v->raster.seen, WIDTH * HEIGHT * sizeof *seen), off = 0;
+    for (size_t i = 0; i < WIDTH * HEIGHT; i++) {
+        assert_true(seen[i] == LAYOUT_NOTHING_SEEN || seen[i] < s->mesh->triangle_count);
+        off += (seen[i] != LAYOUT_NOTHING_SEEN) != (picture.object[i] > 0.0f);
+    }
+    assert_int_equal(off, 0);
+    free(seen);
+}
+
 /* Through the centres of pixels the rasteriser sees what rays meet, but where an edge passes within 1/256 of a pixel.
  */
 static void the_rasteriser_sees_what_rays_meet(void **state)
@@ -320,6 +334,8 @@ static void the_rasteriser_sees_what_rays_meet(void **state)
             print_message("%s: mean %.2e, worst %.2e, %u of %u pixels off, %u of their layers\n", ways[i], d.mean,
                           d.worst, d.off, d.count, layers_off);
             assert_true(d.off <= d.count / 50 && d.mean < 1e-4 && layers_off <= 4);
+            if (s.vulkan->vulkan->way == PRIMARY_BY_RASTER)
+                expect_drawn(&s);
         }
         assert_true(s.vulkan->vulkan->raster.device != NULL && s.vulkan->vulkan->way != PRIMARY_BY_FASTER);
         assert_true(i == 1 || s.vulkan->vulkan->way == PRIMARY_BY_RASTER);
