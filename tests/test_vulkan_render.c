@@ -325,7 +325,7 @@ static void the_rasteriser_sees_what_rays_meet(void **state)
         stage s = make_stage(NULL, &desc);
         helio_frame_info cpu, vulkan;
         light_stage_with(&s, 17);
-        for (size_t view = i; view < 3; view += 1 + i) {
+        for (size_t view = i; view < 3; view += 2) {
             static const char *const cameras[] = {"auto", "orbit:azimuth=70", "lookat:eye=0.3,0.1,0.2,fov=70"};
             assert_ok(helio_camera_parse(cameras[view], s.mesh, (float)WIDTH / HEIGHT, &s.frame.camera));
             render_both(&s, &cpu, &vulkan);
@@ -382,10 +382,12 @@ static void shadows_are_caught_as_on_the_cpu(void **state)
         assert_true(d.off <= (traces ? d.count / 10 : 0) && d.mean < 1e-3);
         assert_true(traces || (vulkan.points == cpu.points && vulkan.rays == cpu.rays));
         assert_true(i == 0 || greatest_alpha_of_ground(&s) > 0.5);
-        s.frame.progress = i == 0 ? stop_at_half : NULL;
-        render_both(&s, &cpu, &vulkan);
-        assert_true(cpu.stopped == (i == 0) && vulkan.stopped == (i == 0));
-        assert_true(compare_pictures(&s, ROUNDING).off <= (traces ? d.count / 10 : 0));
+        if (i == 0) {
+            s.frame.progress = stop_at_half;
+            render_both(&s, &cpu, &vulkan);
+            assert_true(cpu.stopped && vulkan.stopped);
+            assert_int_equal(compare_pictures(&s, ROUNDING).off, 0);
+        }
         destroy_stage(&s);
     }
     traces = casts_shadows = plays_hardware = false;
