@@ -16,6 +16,13 @@ bool textures_are_seen(const helio_scene *scene)
     return scene->own_materials && scene->mesh->texture_count != 0;
 }
 
+static helio_status create_filled(vulkan_commands *commands, const void *data, uint64_t bytes, const char *name,
+                                  vulkan_buffer *buffer)
+{
+    HELIO_TRY(buffer_create(commands->device, BUFFER_ON_DEVICE, bytes, 1, name, buffer));
+    return commands_upload(commands, buffer, data, bytes);
+}
+
 /* All texels, one texture behind the other, go through one piece of memory. */
 static helio_status upload_texels(vulkan_textures *textures, vulkan_commands *commands, const helio_mesh *mesh)
 {
@@ -61,12 +68,9 @@ static helio_status upload_coordinates(vulkan_textures *textures, vulkan_command
     float(*coordinates)[3][2] = context_allocate(tree->context, tree->triangle_count, sizeof *coordinates);
     if (coordinates == NULL)
         return HELIO_ERR_MEMORY;
-    const uint64_t bytes = tree->triangle_count * sizeof *coordinates;
     fill_coordinates(mesh, tree, coordinates);
-    helio_status status =
-        buffer_create(commands->device, BUFFER_ON_DEVICE, bytes, 1, "the texture coordinates", &textures->coordinates);
-    if (status == HELIO_OK)
-        status = commands_upload(commands, &textures->coordinates, coordinates, bytes);
+    helio_status status = create_filled(commands, coordinates, tree->triangle_count * sizeof *coordinates,
+                                        "the texture coordinates", &textures->coordinates);
     context_release(tree->context, coordinates);
     return status;
 }
@@ -77,12 +81,9 @@ static helio_status upload_shapes(vulkan_textures *textures, vulkan_commands *co
     struct layout_texture *shapes = context_allocate(tree->context, mesh->texture_count, sizeof *shapes);
     if (shapes == NULL)
         return HELIO_ERR_MEMORY;
-    const uint64_t bytes = mesh->texture_count * sizeof *shapes;
     fill_shapes(mesh, shapes);
-    helio_status status =
-        buffer_create(commands->device, BUFFER_ON_DEVICE, bytes, 1, "the shapes of textures", &textures->shapes);
-    if (status == HELIO_OK)
-        status = commands_upload(commands, &textures->shapes, shapes, bytes);
+    helio_status status = create_filled(commands, shapes, mesh->texture_count * sizeof *shapes,
+                                        "the shapes of textures", &textures->shapes);
     context_release(tree->context, shapes);
     return status;
 }
@@ -90,9 +91,7 @@ static helio_status upload_shapes(vulkan_textures *textures, vulkan_commands *co
 static helio_status upload_curves(vulkan_textures *textures, vulkan_commands *commands, const helio_scene *scene)
 {
     const texture_curve curves[2] = {scene->srgb, scene->linear};
-    HELIO_TRY(buffer_create(commands->device, BUFFER_ON_DEVICE, 1, sizeof curves, "the curves of textures",
-                            &textures->curves));
-    return commands_upload(commands, &textures->curves, curves, sizeof curves);
+    return create_filled(commands, curves, sizeof curves, "the curves of textures", &textures->curves);
 }
 
 static helio_status upload(vulkan_textures *textures, vulkan_commands *commands, const helio_scene *scene,
@@ -109,8 +108,7 @@ static helio_status upload(vulkan_textures *textures, vulkan_commands *commands,
         .shapes = textures->shapes.address,
         .point_materials = LAYOUT_SHARED_MATERIALS + scene->mesh->material_count,
     };
-    HELIO_TRY(buffer_create(commands->device, BUFFER_ON_DEVICE, 1, sizeof all, "the textures", &textures->all));
-    return commands_upload(commands, &textures->all, &all, sizeof all);
+    return create_filled(commands, &all, sizeof all, "the textures", &textures->all);
 }
 
 helio_status textures_create(vulkan_commands *commands, const helio_scene *scene, const bvh *tree,
