@@ -68,9 +68,6 @@ static int choose_light(render_plan *plan, bool may_be_sequence)
 
 static int check_program(const cli_options *options)
 {
-    const bool is_vulkan = is(options->backend, "vulkan");
-    if (is_vulkan && is(options->ground, "shadow"))
-        return message_usage("--backend vulkan has no --ground shadow yet; give another ground, or --backend cpu");
     if (options->quiet && options->verbose)
         return message_usage("--quiet and --verbose exclude each other; give one of them");
     return EXIT_CODE_OK;

@@ -13,15 +13,19 @@ set(SHADER_FILES "")
 foreach(name ${SHADERS})
     set(binary "${SHADER_BINARIES}/${name}.spv")
     set(validation "")
+    set(source "${name}")
+    if(NOT name MATCHES "\\.") # other stages than compute are part of the name
+        set(source "${name}.comp")
+    endif()
     if(SPIRV_VAL)
         set(validation COMMAND ${SPIRV_VAL} --target-env vulkan1.2 "${binary}")
     endif()
     add_custom_command(
         OUTPUT "${binary}"
         COMMAND ${GLSLC} --target-env=vulkan1.2 -O -Werror -I "${SHADER_FOLDER}" -o "${binary}"
-                "${SHADER_FOLDER}/${name}.comp"
+                "${SHADER_FOLDER}/${source}"
         ${validation}
-        DEPENDS "${SHADER_FOLDER}/${name}.comp" ${SHADER_INCLUDES}
+        DEPENDS "${SHADER_FOLDER}/${source}" ${SHADER_INCLUDES}
         VERBATIM)
     list(APPEND SHADER_FILES "${binary}")
 endforeach()

@@ -1,58 +1,16 @@
 #version 460
 // SPDX-License-Identifier: MIT
 //
-// The pixels that hit nothing: the map, interpolated between its texels, or nothing. As src/env/lookup.c.
+// The pixels that hit nothing.
 #include "common.glsl"
+
+layout(constant_id = 1) const uint VISIBILITY = LAYOUT_SHADOWS_CAST;
+
 #include "random.glsl"
 #include "cube.glsl"
 #include "film.glsl"
 #include "camera.glsl"
-
-vec3 background_vector(uint i)
-{
-    return vec3(STEP.background[3u * i], STEP.background[3u * i + 1u], STEP.background[3u * i + 2u]);
-}
-
-// The texel at a place that may lie half a texel beyond an edge of the face.
-vec3 texel_across_edges(uint face, vec2 place)
-{
-    const cube_position at = cube_project(cube_point(face, place.x, place.y));
-    return texel_radiance(texel_index(at.face, cube_texel(at.v, STATE.size), cube_texel(at.u, STATE.size)));
-}
-
-// The four texels around a place, the first with its centre at `first`. Only three meet at a corner of the cube: the
-// fourth becomes their average.
-void texels_around(uint face, vec2 first, out vec3 around[4])
-{
-    const float step_size = 2.0 / float(STATE.size);
-    int beyond = -1;
-    for (int i = 0; i < 4; i++) {
-        const vec2 place = first + vec2((i & 1) != 0 ? step_size : 0.0, (i & 2) != 0 ? step_size : 0.0);
-        if (abs(place.x) > 1.0 && abs(place.y) > 1.0)
-            beyond = i;
-        around[i] = texel_across_edges(face, place);
-    }
-    if (beyond >= 0)
-        around[beyond] = (around[beyond ^ 1] + around[beyond ^ 2] + around[beyond ^ 3]) / 3.0;
-}
-
-vec3 filtered(vec3 direction)
-{
-    const cube_position at = cube_project(direction);
-    const float size = float(STATE.size);
-    const vec2 place = (vec2(at.u, at.v) + 1.0) * 0.5 * size - 0.5, whole = floor(place), part = place - whole;
-    vec3 around[4];
-    if (all(greaterThanEqual(whole, vec2(0.0))) && all(lessThan(whole, vec2(size - 1.0)))) {
-        const uint first = texel_index(at.face, uint(whole.y), uint(whole.x));
-        around = vec3[4](texel_radiance(first), texel_radiance(first + 1u), texel_radiance(first + STATE.size),
-                         texel_radiance(first + STATE.size + 1u));
-    } else {
-        texels_around(at.face, (2.0 * whole + 1.0) / size - 1.0, around);
-    }
-    const vec3 upper = around[0] + part.x * (around[1] - around[0]);
-    const vec3 lower = around[2] + part.x * (around[3] - around[2]);
-    return upper + part.y * (lower - upper);
-}
+#include "background.glsl"
 
 void main()
 {
@@ -61,11 +19,5 @@ void main()
     if (index >= STEP.counts_of_lists.at[1])
         return;
     const uint pixel = STEP.misses.at[index];
-    vec3 radiance = vec3(0.0);
-    if (STEP.shows_background != 0u) {
-        const vec2 place = position_of(pixel);
-        const vec3 direction = background_vector(0u) + background_vector(1u) * place.x + background_vector(2u) * place.y;
-        radiance = filtered(direction) * STEP.intensity;
-    }
-    film_add(pixel, radiance, false, false);
+    film_add(pixel, background_at(pixel), false, false);
 }

@@ -63,12 +63,28 @@
 #define LAYOUT_STREAM_WINDOW 3
 #define LAYOUT_STREAM_BIN 4
 
+/* helio_wrap, and where the curve of a kind of texture begins among all. */
+#define LAYOUT_WRAP_REPEAT 0
+#define LAYOUT_WRAP_CLAMP 1
+#define LAYOUT_WRAP_MIRROR 2
+#define LAYOUT_CURVE_SRGB 0
+#define LAYOUT_CURVE_LINEAR 256
+
 /* What camera rays meet, see hits.h. */
 #define LAYOUT_MATERIAL_OBJECT 0 /* of all points; those of single points or triangles come behind */
 #define LAYOUT_MATERIAL_GROUND 1
 #define LAYOUT_SHARED_MATERIALS 2
 #define LAYOUT_HIT_OBJECT 1
 #define LAYOUT_HIT_PLANE 2
+#define LAYOUT_HIT_CATCHER 3
+
+#define LAYOUT_NOTHING_SEEN 0xffffffffu /* in place of a triangle */
+
+/* What becomes of light that something is in the way of, a constant of pipelines: nothing, as it passes; shadows; shadows
+ * which are all that is seen of the ground. */
+#define LAYOUT_SHADOWS_NONE 0
+#define LAYOUT_SHADOWS_CAST 1
+#define LAYOUT_SHADOWS_CAUGHT 2
 
 /* sum x 2^-exponent, see row_sum in tables.h. */
 struct layout_row_sum {
@@ -92,7 +108,13 @@ struct layout_material {
     FLOAT exponent;
     FLOAT metallic;
     FLOAT roughness;
-    UINT padding[2];
+    UINT base_colour, metallic_roughness; /* see helio_material_textures; of materials of triangles */
+};
+
+/* Where the texels of a texture begin among all. */
+struct layout_texture {
+    UINT first, width, height;
+    UINT wraps; /* helio_wrap of u, and << 2 of v */
 };
 
 /* What a camera ray met. */
@@ -172,6 +194,10 @@ layout(buffer_reference, std430, buffer_reference_align = 4) buffer faults_of_ma
 {
     layout_faults all;
 };
+layout(buffer_reference, std430, buffer_reference_align = 4) buffer shapes_of_textures
+{
+    layout_texture at[];
+};
 layout(buffer_reference, std430, buffer_reference_align = 4) buffer large_texels
 {
     layout_large at[];
@@ -179,6 +205,23 @@ layout(buffer_reference, std430, buffer_reference_align = 4) buffer large_texels
 layout(buffer_reference, std430, buffer_reference_align = 16) buffer patches_of_map
 {
     layout_patch at[];
+};
+#endif
+
+/* The textures of a mesh. */
+struct layout_textures {
+    ADDRESS(uints, texels);               /* as bytes red, green, blue, alpha */
+    ADDRESS(floats, curves);              /* [2][256]: what the bytes stand for */
+    ADDRESS(floats, coordinates);         /* [triangles][3][2] */
+    ADDRESS(shapes_of_textures, shapes);
+    UINT point_materials;                 /* where those of single points begin, behind those of the mesh */
+    UINT padding;
+};
+
+#ifdef VULKAN
+layout(buffer_reference, std430, buffer_reference_align = 8) buffer textures_of_mesh
+{
+    layout_textures all;
 };
 #endif
 
@@ -228,12 +271,16 @@ struct layout_step {
     ADDRESS(vectors, materials);             /* [...][3]: struct layout_material */
     ADDRESS(vectors, picture);               /* [height][width]: red, green, blue, alpha */
     ADDRESS(floats, object);                 /* [height][width] */
+    ADDRESS(vectors, caught);                /* [height][width][2]: see film.glsl; nothing without a shadow catcher */
     ADDRESS(uints, misses);                  /* [miss_count]: pixels that show the background */
     ADDRESS(counts_of_frame, counts);
     ADDRESS(vectors, origins);  /* [point_count]: where shadow rays start, see rays.glsl; nothing without them */
     ADDRESS(vectors, nodes);    /* [...][4]: struct bvh_node */
     ADDRESS(vectors, triangles); /* [...][3] */
     ADDRESS(vectors, normals);  /* [...][4]: of a triangle's plane and of its corners */
+    ADDRESS(textures_of_mesh, textures); /* nothing where there are none */
+    ADDRESS(vectors, surfaces); /* [height][width][3]: see primary.comp; nothing where layers are not wanted */
+    ADDRESS(uints, seen);       /* [height][width]: see raster.h; nothing where camera rays are traced */
     ADDRESS(uints, counts_of_lists); /* [2]: points and misses */
     ADDRESS(uints, groups_of_lists); /* [3][3]: work groups for points, for points one by one, for misses */
     FLOAT map_axes[9];     /* see environment.h */
@@ -256,7 +303,7 @@ struct layout_step {
     UINT is_first, is_last;
     UINT shows_background;
     FLOAT weight;          /* of all samples when the step is over */
-    UINT has_ground;
+    UINT ground_hit;       /* LAYOUT_HIT_PLANE or _CATCHER; 0 where there is no ground */
     FLOAT control_part;    /* of the control variate that is added */
     UINT padding;
 };
@@ -287,7 +334,7 @@ struct layout_push {
 _Static_assert(sizeof(struct layout_sums) == 176, "as in the shaders");
 _Static_assert(sizeof(struct layout_material) == 48 && sizeof(struct layout_point) == 48, "as in the shaders");
 _Static_assert(sizeof(struct layout_state) == 27 * 8 + 18 * 4, "as in the shaders");
-_Static_assert(sizeof(struct layout_step) == 12 * 8 + 58 * 4, "as in the shaders");
+_Static_assert(sizeof(struct layout_step) == 16 * 8 + 58 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_map) == 6 * 8 + 6 * 4 + LAYOUT_VIEWS * 20, "as in the shaders");
 _Static_assert(sizeof(struct layout_push) == 32, "as in the shaders");
 #endif

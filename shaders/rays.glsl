@@ -103,10 +103,16 @@ bool is_occluded(vec3 origin, vec3 direction)
     }
 }
 
-// Where rays of a point start, and what is known of it: 1: only open space is below it; 2: the mesh is too far away.
+// Where rays of a point start, and what is known of it: 1: only open space is below it; 2: the mesh is too far
+// away; 4: it is of the shadow catcher.
 vec4 read_origin(uint point)
 {
     return VISIBILITY != 0u ? STEP.origins.at[point] : vec4(0.0);
+}
+
+bool is_of_catcher(vec4 origin)
+{
+    return VISIBILITY == LAYOUT_SHADOWS_CAUGHT && (floatBitsToUint(origin.w) & 4u) != 0u;
 }
 
 // A direction of the map's space that is above the point's horizons.
@@ -118,7 +124,7 @@ bool reaches(vec4 origin, vec3 in_map)
                                 dot(vec3(STEP.map_axes[3], STEP.map_axes[4], STEP.map_axes[5]), in_map),
                                 dot(vec3(STEP.map_axes[6], STEP.map_axes[7], STEP.map_axes[8]), in_map));
     const uint known = floatBitsToUint(origin.w);
-    if (STEP.has_ground != 0u && direction.y < 0.0)
+    if (STEP.ground_hit != 0u && direction.y < 0.0)
         return (known & 1u) != 0u;
     return (known & 2u) != 0u || !is_occluded(origin.xyz, direction);
 }

@@ -4,14 +4,18 @@
 
 vec4 origin_of_rays; // of the point in hand, see read_origin()
 
-// Light that reaches the point and the number of useful samples, whether or not they reach it, so far.
+// Light that reaches the point and the number of useful samples, whether or not they reach it, so far. Of the shadow
+// catcher the luminance that reaches it, and would without the object, in place of light.
 void add_sample(vec3 light, bool counts, vec3 direction, inout vec4 sum)
 {
     counts = counts && light.r + light.g + light.b > 0.0;
     if (VISIBILITY == 0u)
         sum += counts ? vec4(light, 1.0) : vec4(0.0);
-    else if (counts)
-        sum += vec4(reaches(origin_of_rays, direction) ? light : vec3(0.0), 1.0);
+    else if (counts) {
+        const float whole = luminance(light);
+        const vec3 reaching = reaches(origin_of_rays, direction) ? light : vec3(0.0);
+        sum += is_of_catcher(origin_of_rays) ? vec4(luminance(reaching), whole, 0.0, 1.0) : vec4(reaching, 1.0);
+    }
 }
 
 // A sample of a light technique. light: its radiance / density. expected: how many of them the technique draws.

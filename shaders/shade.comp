@@ -11,7 +11,7 @@ layout(constant_id = 2) const uint LANES = 16u;  // threads for a point, divides
 layout(constant_id = 3) const uint KINDS = 7u;   // of materials, as bits
 layout(constant_id = 4) const uint LIGHT = 2u;
 layout(constant_id = 5) const uint SURFACE = 2u;
-layout(constant_id = 6) const uint VISIBILITY = 1u; // whether shadow rays are traced
+layout(constant_id = 6) const uint VISIBILITY = LAYOUT_SHADOWS_CAST;
 
 #include "random.glsl"
 #include "cube.glsl"
@@ -27,6 +27,8 @@ layout(constant_id = 6) const uint VISIBILITY = 1u; // whether shadow rays are t
 #include "pool_samples.glsl"
 #include "control.glsl"
 #include "control_point.glsl"
+#include "camera.glsl"
+#include "background.glsl"
 
 shared prepared_point points[POINTS];
 shared vec4 parts[LANES > 1u ? POINTS * LANES : 1u]; // light, and the number of useful samples
@@ -50,7 +52,10 @@ void finish(shading_point given, prepared_point p, vec4 sum)
 {
     if (weighs_tiles(p))
         return;
-    film_add(given.pixel, (sum.rgb + control_of(p)) * STEP.intensity, true, given.hit == LAYOUT_HIT_OBJECT);
+    if (CATCHES && given.hit == LAYOUT_HIT_CATCHER)
+        film_catch(given.pixel, background_at(given.pixel), sum.xy);
+    else
+        film_add(given.pixel, (sum.rgb + control_of(p)) * STEP.intensity, true, given.hit == LAYOUT_HIT_OBJECT);
     atomicAdd(samples_of_group, samples_of(p));
     atomicAdd(useful_of_group, uint(sum.w + 0.5));
 }
@@ -61,7 +66,7 @@ void main()
     const uint thread = gl_LocalInvocationID.x, first = group_index() * POINTS;
     const uint point_count = STEP.counts_of_lists.at[0];
     const bool has_point = thread < POINTS && first + thread < point_count;
-    shading_point given;
+    shading_point given = shading_point(0u, 0u, 0u, vec3(0.0), vec3(0.0), vec3(0.0));
     prepared_point own;
     if (thread == 0u)
         samples_of_group = useful_of_group = 0u;

@@ -7,7 +7,7 @@
 #include "common.glsl"
 
 layout(constant_id = 1) const uint KINDS = 7u; // of materials, as bits
-layout(constant_id = 2) const uint VISIBILITY = 1u;
+layout(constant_id = 2) const uint VISIBILITY = LAYOUT_SHADOWS_CAST;
 const uint LIGHT = LAYOUT_LIGHT_BINS, SURFACE = LAYOUT_SURFACE_BRDF;
 
 #include "random.glsl"

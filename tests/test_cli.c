@@ -235,7 +235,6 @@ static const struct {
     {"render --ground grass", "none, plane or shadow"},
     {"render --visibility all", "none or ray"},
     {"render --decorrelate blue", "hash or none"},
-    {"render --backend vulkan --ground shadow", "shadow"},
     {"samples --backend vulkan", "vulkan"},
     {"bench --stages device", "backend"},
     {"render --backend gpu", "gpu"},

@@ -131,6 +131,97 @@ static void pools_of_bins_hold_the_same_samples(void **state)
     world_destroy(&w);
 }
 
+/* ---- chi-square ---- */
+
+enum { CHI_SIZE = 8, CHI_TEXELS = 6 * CHI_SIZE * CHI_SIZE, CHI_TESTS = 64 };
+
+/* One chance in a million that any of all tests, of which there are no more than this, fails without a reason. */
+static const double LEAST_P = 1e-6 / CHI_TESTS;
+
+/* All brightnesses up to a hundredfold, and a third of the texels black. */
+static void fill_noise(helio_environment *environment, uint64_t seed)
+{
+    for (size_t i = 0; i < CHI_TEXELS; i++) {
+        const float radiance = random_bits(&seed) % 3 == 0 ? 0.0f : expf(4.6f * (float)random_unit(&seed));
+        for (size_t c = 0; c < 3; c++)
+            environment->cube[3 * i + c] = radiance;
+    }
+    environment->frame++;
+}
+
+/* Adds the directions that the device drew to counts of texels [pools][CHI_TEXELS]. */
+static void count_texels(vulkan_world *w, double *drawn)
+{
+    const size_t length = helio_pools_length(w->pools), samples = helio_pools_count(w->pools) * length;
+    float(*found)[4] = read_buffer(&w->commands, &w->light.pools, samples * sizeof *found);
+    for (size_t i = 0; i < samples; i++) {
+        const cube_position at = cube_project((vec3){found[i][0], found[i][1], found[i][2]});
+        const size_t row = at.face * CHI_SIZE + cube_texel(at.v, CHI_SIZE);
+        drawn[i / length * CHI_TEXELS + row * CHI_SIZE + cube_texel(at.u, CHI_SIZE)]++;
+    }
+    free(found);
+}
+
+/* Do counts of texels follow the densities of a pool? These are even in (u, v) over a texel. */
+static double pool_tail(const vulkan_world *w, uint32_t pool, double draws, const double *drawn)
+{
+    double expected[CHI_TEXELS];
+    for (uint32_t i = 0; i < CHI_TEXELS; i++) {
+        const uint32_t column = i % CHI_SIZE, row = i / CHI_SIZE % CHI_SIZE, face = i / (CHI_SIZE * CHI_SIZE);
+        const double u = (column + 0.5) * 2 / CHI_SIZE - 1, v = (row + 0.5) * 2 / CHI_SIZE - 1;
+        const face_place at = {face, row, column, (float)u, (float)v};
+        const bool is_here = w->pools->parts.light != STRATEGY_LIGHT_FACES || face == pool;
+        const double density = is_here ? (double)pools_density(w->pools, pool, &at) : 0;
+        /* 1e-3: samples within rounding of a border may lead to the neighbour. */
+        expected[i] = draws * density * pow(1 + u * u + v * v, -1.5) * 4 / (CHI_SIZE * CHI_SIZE) + 1e-3;
+    }
+    return chi_square_tail(drawn, expected, CHI_TEXELS, 1);
+}
+
+/* Returns how many pools were tested. Against the densities of another map all must fail. */
+static uint32_t test_draws(vulkan_world *w, helio_weighting weighting, const helio_pools_desc *desc, uint32_t passes)
+{
+    world_make_light(w, CHI_SIZE, weighting, desc);
+    const uint32_t pools = helio_pools_count(w->pools);
+    const double draws = (double)helio_pools_length(w->pools) * passes;
+    double *drawn = calloc((size_t)pools * CHI_TEXELS, sizeof *drawn), least = 1;
+    assert_non_null(drawn);
+    fill_noise(w->environment, 4);
+    for (uint32_t pass = 0; pass < passes; pass++) {
+        world_update(w, 5, pass);
+        count_texels(w, drawn);
+    }
+    for (uint32_t pool = 0; pool < pools; pool++)
+        least = fmin(least, pool_tail(w, pool, draws, drawn + (size_t)pool * CHI_TEXELS));
+    print_message("%s, %u pools: least p %.3g\n", helio_strategy_name(desc->strategy), pools, least);
+    assert_true(least > LEAST_P);
+    fill_noise(w->environment, 6);
+    world_update(w, 5, 0);
+    for (uint32_t pool = 0; pool < pools; pool++)
+        assert_true(pool_tail(w, pool, draws, drawn + (size_t)pool * CHI_TEXELS) < LEAST_P);
+    free(drawn);
+    world_destroy_light(w);
+    return pools;
+}
+
+static void samples_of_the_device_follow_the_densities(void **state)
+{
+    static const helio_pools_desc descs[] = {{.strategy = HELIO_STRATEGY_FACE},
+                                             {.strategy = HELIO_STRATEGY_LIGHT},
+                                             {.strategy = HELIO_STRATEGY_PRODUCT, .length = 256, .bins = 2}};
+    static const uint32_t passes[] = {10, 2, 60};
+    vulkan_world w = world_make();
+    uint32_t tests = 0;
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        tests += test_draws(&w, HELIO_WEIGHTING_SOLID_ANGLE, &descs[i], passes[i]);
+        if (i == 0)
+            tests += test_draws(&w, HELIO_WEIGHTING_PAPER, &descs[i], passes[i]);
+    }
+    assert_true(tests <= CHI_TESTS);
+    world_destroy(&w);
+}
+
 /* With the work groups that hardware gets. */
 static void groups_of_many_threads_draw_the_same(void **state)
 {
@@ -149,6 +240,7 @@ int main(void)
         cmocka_unit_test(pools_of_faces_hold_the_same_samples),
         cmocka_unit_test(the_pool_of_the_map_holds_the_same_samples),
         cmocka_unit_test(pools_of_bins_hold_the_same_samples),
+        cmocka_unit_test(samples_of_the_device_follow_the_densities),
         cmocka_unit_test(groups_of_many_threads_draw_the_same),
     };
     return cmocka_run_group_tests_name("vulkan_pools", tests, NULL, NULL);

@@ -42,9 +42,8 @@ typedef struct helio_renderer_desc {
     bool no_decorrelation; /* all pixels read the same windows of the pools: shows bands */
     bool no_visibility;    /* light passes through everything, the paper's setting; default: shadow rays */
     helio_background background;
-    helio_device *device; /* computes tables, pools, rays, light and background; it must outlive the renderer. Camera
-                             rays are the CPU's for meshes with textures and for aovs; shadow catchers there are none:
-                             HELIO_ERR_UNSUPPORTED. Default: the CPU computes all */
+    helio_device *device; /* computes tables, pools, rays, light and background; it must outlive the renderer. Default:
+                             the CPU computes all */
     bool aovs;            /* also fill albedo, normal, position and depth: means over the camera samples that
                                                   hit object or plane (a shadow catcher is not hit) */
 } helio_renderer_desc;

@@ -99,8 +99,8 @@ static helio_status create_parts(helio_renderer *renderer)
         .height = desc->height,
         .shows_background = desc->background == HELIO_BACKGROUND_ENVIRONMENT,
         .has_surfaces = desc->aovs,
-        .has_steps =
-            (desc->device == NULL || desc->aovs) && (frame_step_count(renderer) > 1 || renderer->extras.keeps_sums),
+        .has_steps = (desc->device == NULL || renderer->extras.cpu_rays) &&
+                     (frame_step_count(renderer) > 1 || renderer->extras.keeps_sums),
     };
     HELIO_TRY(film_create(renderer->context, &film, &renderer->film));
     HELIO_TRY(hits_create(renderer->context, desc->scene, desc->width, desc->height, &renderer->hits));

@@ -42,23 +42,37 @@ static helio_status fail_memory(const helio_device *device, uint64_t bytes, cons
                 device->info.name, name, (double)bytes / 0x1p20, (double)device->info.memory / 0x1p20);
 }
 
-static helio_status allocate(helio_device *device, buffer_place place, const char *name, vulkan_buffer *buffer)
+static helio_status take_memory(const helio_device *device, buffer_place place, const VkMemoryRequirements *wanted,
+                                const char *name, VkDeviceMemory *memory)
 {
-    VkMemoryRequirements requirements;
-    device->vk.GetBufferMemoryRequirements(device->device, buffer->buffer, &requirements);
     const VkMemoryAllocateFlagsInfo flags = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO,
                                              .flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT};
     const VkMemoryAllocateInfo allocation = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
                                              .pNext = &flags,
-                                             .allocationSize = requirements.size,
+                                             .allocationSize = wanted->size,
                                              .memoryTypeIndex =
-                                                 find_memory_type(device, requirements.memoryTypeBits, wish_of(place))};
-    if (allocation.memoryTypeIndex == UINT32_MAX || requirements.size > device->info.buffer_bytes)
-        return fail_memory(device, requirements.size, name);
-    VkResult result = device->vk.AllocateMemory(device->device, &allocation, NULL, &buffer->memory);
+                                                 find_memory_type(device, wanted->memoryTypeBits, wish_of(place))};
+    if (allocation.memoryTypeIndex == UINT32_MAX || wanted->size > device->info.buffer_bytes)
+        return fail_memory(device, wanted->size, name);
+    VkResult result = device->vk.AllocateMemory(device->device, &allocation, NULL, memory);
     if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
-        return fail_memory(device, requirements.size, name);
-    HELIO_TRY(vulkan_check(result, "taking memory"));
+        return fail_memory(device, wanted->size, name);
+    return vulkan_check(result, "taking memory");
+}
+
+helio_status buffer_allocate_image(const helio_device *device, VkImage image, const char *name, VkDeviceMemory *memory)
+{
+    VkMemoryRequirements requirements;
+    device->vk.GetImageMemoryRequirements(device->device, image, &requirements);
+    HELIO_TRY(take_memory(device, BUFFER_ON_DEVICE, &requirements, name, memory));
+    return vulkan_check(device->vk.BindImageMemory(device->device, image, *memory, 0), "using memory");
+}
+
+static helio_status allocate(helio_device *device, buffer_place place, const char *name, vulkan_buffer *buffer)
+{
+    VkMemoryRequirements requirements;
+    device->vk.GetBufferMemoryRequirements(device->device, buffer->buffer, &requirements);
+    HELIO_TRY(take_memory(device, place, &requirements, name, &buffer->memory));
     HELIO_TRY(
         vulkan_check(device->vk.BindBufferMemory(device->device, buffer->buffer, buffer->memory, 0), "using memory"));
     if (place == BUFFER_ON_DEVICE || place == BUFFER_SHARED)

@@ -26,6 +26,9 @@ helio_status buffer_create(helio_device *device, buffer_place place, uint64_t co
                            vulkan_buffer *out);
 void buffer_destroy(helio_device *device, vulkan_buffer *buffer);
 
+/* Takes memory of the device for an image. */
+helio_status buffer_allocate_image(const helio_device *device, VkImage image, const char *name, VkDeviceMemory *memory);
+
 /* All of a list that ends with NULL. */
 void buffers_destroy(helio_device *device, vulkan_buffer *const *buffers);
 

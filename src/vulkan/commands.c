@@ -233,8 +233,8 @@ void commands_label_end(vulkan_commands *commands)
 
 /* ---- data, at once ------------------------------------------------------------------------ */
 
-static helio_status copy_now(vulkan_commands *commands, const vulkan_buffer *from, const vulkan_buffer *to,
-                             uint64_t bytes)
+helio_status commands_copy_now(vulkan_commands *commands, const vulkan_buffer *from, const vulkan_buffer *to,
+                               uint64_t bytes)
 {
     HELIO_TRY(commands_begin(commands));
     commands_copy(commands, from, to, bytes);
@@ -247,7 +247,7 @@ helio_status commands_upload(vulkan_commands *commands, const vulkan_buffer *to,
     vulkan_buffer staging;
     HELIO_TRY(buffer_create(commands->device, BUFFER_UPLOAD, bytes, 1, "an upload", &staging));
     memcpy(staging.mapped, data, bytes);
-    helio_status status = copy_now(commands, &staging, to, bytes);
+    helio_status status = commands_copy_now(commands, &staging, to, bytes);
     buffer_destroy(commands->device, &staging);
     return status;
 }
@@ -256,7 +256,7 @@ helio_status commands_download(vulkan_commands *commands, const vulkan_buffer *f
 {
     vulkan_buffer staging;
     HELIO_TRY(buffer_create(commands->device, BUFFER_READBACK, bytes, 1, "a read-back", &staging));
-    helio_status status = copy_now(commands, from, &staging, bytes);
+    helio_status status = commands_copy_now(commands, from, &staging, bytes);
     if (status == HELIO_OK)
         memcpy(data, staging.mapped, bytes);
     buffer_destroy(commands->device, &staging);

@@ -60,7 +60,11 @@ double commands_milliseconds(const vulkan_commands *commands, uint32_t from, uin
 void commands_label(vulkan_commands *commands, const char *name);
 void commands_label_end(vulkan_commands *commands);
 
-/* Records, submits and waits: data to the beginning of a buffer of the device. Takes memory for the time of the call.
+/* Records, submits and waits. */
+helio_status commands_copy_now(vulkan_commands *commands, const vulkan_buffer *from, const vulkan_buffer *to,
+                               uint64_t bytes);
+
+/* The same: data to the beginning of a buffer of the device. Takes memory for the time of the call.
  */
 helio_status commands_upload(vulkan_commands *commands, const vulkan_buffer *to, const void *data, uint64_t bytes);
 

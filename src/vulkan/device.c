@@ -99,6 +99,7 @@ static helio_status choose(helio_device *device, const char *name)
     device->upload_family = found->upload_family;
     device->uploads_are_timed = found->uploads_are_timed && found->resets_queries;
     device->resets_queries = found->resets_queries;
+    device->draws = found->draws;
     device->timestamp_period = found->timestamp_period;
     device->info = found->info;
     device->vk.GetPhysicalDeviceMemoryProperties(device->physical, &device->memory);

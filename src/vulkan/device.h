@@ -21,6 +21,7 @@ struct helio_device {
     uint32_t queue_family, upload_family;
     bool uploads_are_timed;
     bool resets_queries; /* the host may reset clocks */
+    bool draws;          /* on the queue that computes */
     bool is_imported;    /* instance and device are somebody else's */
     VkPhysicalDeviceMemoryProperties memory;
     float timestamp_period; /* ns of a tick; 0: it cannot tell the time */

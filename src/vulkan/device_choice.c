@@ -99,20 +99,30 @@ static void find_lacks(const vulkan_functions *vk, device_choice *choice)
     snprintf(choice->info.lacks, sizeof choice->info.lacks, "%s", lacks);
 }
 
+primary_way device_choice_primary(void)
+{
+    const char *variable = getenv("HELIOSTAT_VULKAN_PRIMARY");
+    if (variable == NULL || (strcmp(variable, "raster") != 0 && strcmp(variable, "auto") != 0))
+        return PRIMARY_BY_RAYS;
+    return variable[0] == 'r' ? PRIMARY_BY_RASTER : PRIMARY_BY_FASTER;
+}
+
 /* A family that computes, and one that copies beside it, if there is any. Of those that compute, if there is one that
- * does not draw as well, as nothing else may be waiting there. */
+ * does not draw as well, as nothing else may be waiting there; or where the rasteriser is wanted, one that does. */
 static void find_queue(const vulkan_functions *vk, device_choice *choice, float period)
 {
     VkQueueFamilyProperties families[32];
     uint32_t count = sizeof families / sizeof families[0];
     vk->GetPhysicalDeviceQueueFamilyProperties(choice->physical, &count, families);
+    const bool wants_drawing = device_choice_primary() != PRIMARY_BY_RAYS;
     choice->queue_family = UINT32_MAX;
     for (uint32_t i = 0; i < count; i++) {
         bool computes = families[i].queueFlags & VK_QUEUE_COMPUTE_BIT;
         bool draws = families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT;
-        if (!computes || (choice->queue_family != UINT32_MAX && draws))
+        if (!computes || (choice->queue_family != UINT32_MAX && draws != wants_drawing))
             continue;
         choice->queue_family = i;
+        choice->draws = draws;
         choice->timestamp_period = families[i].timestampValidBits >= 32 ? period : 0.0f;
     }
     choice->info.has_timestamps = choice->timestamp_period > 0.0f;

@@ -9,12 +9,23 @@
 
 enum { DEVICE_CHOICES = 32 }; /* more are not looked at */
 
+/* How pixels find the triangle that they see. */
+typedef enum primary_way {
+    PRIMARY_BY_RAYS,
+    PRIMARY_BY_RASTER,
+    PRIMARY_BY_FASTER, /* as measured in the first frame */
+} primary_way;
+
+/* What the environment variable HELIOSTAT_VULKAN_PRIMARY asks for: ray, raster or auto. By default rays. */
+primary_way device_choice_primary(void);
+
 typedef struct device_choice {
     VkPhysicalDevice physical;
     helio_device_info info;
     uint32_t queue_family;
     uint32_t upload_family; /* the same where there is none for transfers alone */
     bool uploads_are_timed, resets_queries;
+    bool draws; /* on the queue that computes */
     float timestamp_period;
 } device_choice;
 

@@ -23,6 +23,13 @@ static void put_vectors(const vec3 *vectors, int count, float *to)
         vec3_to(vectors[i], to + (size_t)i * 3);
 }
 
+static uint32_t ground_hit(const helio_scene *scene)
+{
+    if (scene->ground == HELIO_GROUND_NONE)
+        return 0;
+    return scene->ground == HELIO_GROUND_SHADOW ? LAYOUT_HIT_CATCHER : LAYOUT_HIT_PLANE;
+}
+
 static struct layout_step describe_step(const struct vulkan_renderer *v, const struct frame *frame, uint32_t seed)
 {
     const helio_renderer_desc *desc = &frame->renderer->desc;
@@ -32,12 +39,13 @@ static struct layout_step describe_step(const struct vulkan_renderer *v, const s
         .materials = v->points.materials.address,
         .picture = v->picture.address,
         .object = v->object.address,
+        .caught = v->caught.address,
         .misses = v->points.misses.address,
         .counts = v->counts.address,
         .origins = v->points.origins.address,
         .nodes = v->nodes.address,
         .triangles = v->triangles.address,
-        .has_ground = desc->scene->ground != HELIO_GROUND_NONE,
+        .ground_hit = ground_hit(desc->scene),
         .intensity = desc->environment->intensity,
         .pool_seed = hash_combine(seed, frame->step.pass),
         .point_seed = frame->step_seed,
@@ -47,6 +55,9 @@ static struct layout_step describe_step(const struct vulkan_renderer *v, const s
         .no_beta = desc->no_beta,
         .control_part = estimate_control_part(desc->no_control, !desc->no_visibility),
         .normals = v->normals.address,
+        .textures = v->textures.all.address,
+        .surfaces = v->surfaces.address,
+        .seen = v->raster.seen.address,
         .counts_of_lists = v->points.counts.address,
         .groups_of_lists = v->points.groups.address,
         .camera = {[12] = frame->camera.tan_half_fov, [13] = frame->camera.aspect},
@@ -152,7 +163,7 @@ static void add_surfaces(void *data, size_t index)
             helio_shading_point point;
             if (film->surfaces != NULL && frame->step.camera_sample > 0)
                 sums = film->surfaces[pixel];
-            if (renderer->hits.kinds[pixel] != HIT_NOTHING) {
+            if (renderer->hits.kinds[pixel] == HIT_OBJECT || renderer->hits.kinds[pixel] == HIT_PLANE) {
                 shade_point(frame, pixel, (vec3){0, 0, 0}, &point);
                 shade_add_surface(frame, &point, &sums);
             }
@@ -188,6 +199,7 @@ static helio_status find_points(helio_renderer *renderer, struct frame *frame, b
     v->seen.complete = false;
     if (!v->traces)
         HELIO_TRY(trace_on_cpu(renderer, frame));
+    v->has_new_surfaces = finds_layers(v, renderer);
     v->seen.camera = frame->camera;
     v->seen.complete = renderer->desc.aa == 1;
     info->camera_rays += (uint64_t)renderer->desc.width * renderer->desc.height;
@@ -197,15 +209,52 @@ static helio_status find_points(helio_renderer *renderer, struct frame *frame, b
 
 /* ---- a step ------------------------------------------------------------------------------- */
 
+static void record_primary(struct vulkan_renderer *v, const helio_renderer_desc *desc, vulkan_commands *commands,
+                           primary_way way)
+{
+    const struct layout_push push = light_push(&v->light, v->step.address, 0);
+    const uint64_t across = (desc->width + PRIMARY_EDGE - 1) / PRIMARY_EDGE;
+    const uint64_t down = (desc->height + PRIMARY_EDGE - 1) / PRIMARY_EDGE;
+    if (way == PRIMARY_BY_RASTER)
+        raster_record(&v->raster, commands, &push);
+    commands_dispatch(commands, way == PRIMARY_BY_RASTER ? v->primary_drawn : v->primary, &push, across * down);
+}
+
+/* Finds out which way is faster, by trying both twice: the first time is a warm-up. */
+static helio_status choose_way(struct vulkan_renderer *v, frame_slot *slot, const struct frame *frame,
+                               const helio_frame_desc *desc)
+{
+    static const primary_way ways[2] = {PRIMARY_BY_RAYS, PRIMARY_BY_RASTER};
+    vulkan_commands *commands = &slot->commands;
+    const struct layout_step step = describe_step(v, frame, desc->seed);
+    uint32_t starts[2], ends[2];
+    HELIO_TRY(commands_begin(commands));
+    commands_write(commands, &v->step, &step, sizeof step);
+    for (int i = 0; i < 4; i++) {
+        commands_clear(commands, &v->points.counts);
+        commands_barrier(commands);
+        starts[i % 2] = commands_mark(commands);
+        record_primary(v, &frame->renderer->desc, commands, ways[i % 2]);
+        commands_barrier(commands);
+        ends[i % 2] = commands_mark(commands);
+    }
+    HELIO_TRY(commands_submit(commands));
+    HELIO_TRY(commands_wait(commands));
+    const double by_rays = commands_milliseconds(commands, starts[0], ends[0]);
+    const double by_raster = commands_milliseconds(commands, starts[1], ends[1]);
+    v->way = by_raster < by_rays ? PRIMARY_BY_RASTER : PRIMARY_BY_RAYS;
+    context_log(v->context, HELIO_LOG_INFO, "camera rays: %.3f ms by rays, %.3f ms by the rasteriser", by_rays,
+                by_raster);
+    return HELIO_OK;
+}
+
 /* The lists of points and misses: found by the device, or by the CPU and on their way. */
 static void record_lists(struct vulkan_renderer *v, const helio_renderer_desc *desc, vulkan_commands *commands)
 {
     const struct layout_push push = light_push(&v->light, v->step.address, BACKGROUND_THREADS);
-    const uint64_t across = (desc->width + PRIMARY_EDGE - 1) / PRIMARY_EDGE;
-    const uint64_t down = (desc->height + PRIMARY_EDGE - 1) / PRIMARY_EDGE;
     commands_label(commands, "camera rays");
     if (v->traces)
-        commands_dispatch(commands, v->primary, &push, across * down);
+        record_primary(v, desc, commands, v->way);
     commands_barrier(commands);
     commands_dispatch(commands, v->list_groups, &push, 1);
     commands_barrier(commands);
@@ -226,7 +275,8 @@ static void record_shading(struct vulkan_renderer *v, vulkan_commands *commands)
     commands_label_end(commands);
 }
 
-static void record_read_back(const struct vulkan_renderer *v, frame_slot *slot, bool wants_picture)
+/* may_stop: of a frame that stops here, sums are wanted. */
+static void record_read_back(const struct vulkan_renderer *v, frame_slot *slot, bool wants_picture, bool may_stop)
 {
     vulkan_commands *commands = &slot->commands;
     commands_copy(commands, &v->counts, &slot->counts_back, sizeof(struct layout_counts));
@@ -235,6 +285,10 @@ static void record_read_back(const struct vulkan_renderer *v, frame_slot *slot, 
         return;
     commands_copy(commands, &v->picture, &v->picture_back, v->picture.bytes);
     commands_copy(commands, &v->object, &v->object_back, v->object.bytes);
+    if (may_stop && v->catches)
+        commands_copy(commands, &v->caught, &v->caught_back, v->caught.bytes);
+    if (v->has_new_surfaces)
+        commands_copy(commands, &v->surfaces, &v->surfaces_back, v->surfaces.bytes);
 }
 
 /* Starts with what the step needs that is not there yet: the tables of the frame, the pools of the pass, the points. */
@@ -270,7 +324,7 @@ static void record_step(struct vulkan_renderer *v, frame_slot *slot, const struc
     marks->pools = commands_mark(commands);
     record_shading(v, commands);
     marks->shaded = commands_mark(commands);
-    record_read_back(v, slot, !desc->no_picture);
+    record_read_back(v, slot, !desc->no_picture, !frame->step.is_last);
     marks->back = commands_mark(commands);
 }
 
@@ -278,6 +332,8 @@ static helio_status run_step(struct vulkan_renderer *v, frame_slot *slot, const 
                              const helio_frame_desc *desc)
 {
     const bool is_new_pass = frame->step.pass == slot->info.passes;
+    if (v->way == PRIMARY_BY_FASTER)
+        HELIO_TRY(choose_way(v, slot, frame, desc));
     HELIO_TRY(commands_begin(&slot->commands));
     record_step(v, slot, frame, desc, is_new_pass);
     HELIO_TRY(commands_submit_between(&slot->commands, frame->step.is_first ? light_sent(&v->light) : VK_NULL_HANDLE,
@@ -290,32 +346,70 @@ static helio_status run_step(struct vulkan_renderer *v, frame_slot *slot, const 
 
 /* ---- a frame ------------------------------------------------------------------------------ */
 
+/* The sums that the steps have left in a pixel. */
+static film_light sums_of_pixel(const struct vulkan_renderer *v, size_t pixel)
+{
+    const float *rgba = (const float *)v->picture_back.mapped + 4 * pixel;
+    film_light sums = {.covered = (double)rgba[3], .object = (double)((const float *)v->object_back.mapped)[pixel]};
+    for (int c = 0; c < 3; c++)
+        sums.rgb[c] = (double)rgba[c];
+    if (v->catches) {
+        const float *caught = (const float *)v->caught_back.mapped + 8 * pixel;
+        for (int c = 0; c < 3; c++)
+            sums.catcher_background[c] = (double)caught[c];
+        sums.catcher = (double)caught[3];
+        sums.reaching = (double)caught[4];
+        sums.unoccluded = (double)caught[5];
+    }
+    return sums;
+}
+
 /* What a frame that stopped has in its pixels are sums. */
 static void develop_stopped(helio_renderer *renderer, double weight)
 {
     const struct film *film = &renderer->film;
     const size_t pixels = (size_t)film->width * film->height;
-    const float scale = weight > 0.0 ? (float)(1.0 / weight) : 0.0f;
     for (size_t i = 0; i < pixels; i++) {
-        for (int c = 0; c < 4; c++)
-            film->rgba[4 * i + (size_t)c] *= scale;
-        if (film->shows_background)
-            film->rgba[4 * i + 3] = weight > 0.0 ? 1.0f : 0.0f;
-        film->object[i] *= scale;
+        const film_light sums = sums_of_pixel(renderer->vulkan, i);
+        film_develop_light(&sums, film->shows_background, weight, film->rgba + 4 * i, film->object + i);
         if (film->surfaces != NULL)
             film_develop_surface(film, i, &film->surfaces[i]);
     }
 }
 
-static void take_picture(helio_renderer *renderer, const struct frame *frame, bool has_stopped)
+/* The layers of a tile, of which the device has the sums. */
+static void take_surfaces(void *data, size_t index)
 {
-    const struct vulkan_renderer *v = renderer->vulkan;
+    const struct frame *frame = data;
+    const struct film *film = &frame->renderer->film;
+    const float *all = frame->renderer->vulkan->surfaces_back.mapped;
+    const struct tile tile = frame_tile(frame, index);
+    for (uint32_t y = tile.y0; y < tile.y1; y++)
+        for (uint32_t x = tile.x0; x < tile.x1; x++) {
+            const size_t pixel = (size_t)y * film->width + x;
+            const float *sums = all + 12 * pixel;
+            film_surface surface = {.count = (double)sums[3], .depth = (double)sums[7]};
+            for (size_t c = 0; c < 3; c++) {
+                surface.albedo[c] = (double)sums[c];
+                surface.normal[c] = (double)sums[4 + c];
+                surface.position[c] = (double)sums[8 + c];
+            }
+            film_develop_surface(film, pixel, &surface);
+        }
+}
+
+static void take_picture(helio_renderer *renderer, struct frame *frame, bool has_stopped)
+{
+    struct vulkan_renderer *v = renderer->vulkan;
     const struct film *film = &renderer->film;
     const size_t pixels = (size_t)film->width * film->height;
     memcpy(film->rgba, v->picture_back.mapped, pixels * 4 * sizeof *film->rgba);
     memcpy(film->object, v->object_back.mapped, pixels * sizeof *film->object);
     if (has_stopped && !frame->step.is_last)
         develop_stopped(renderer, frame->weight);
+    if (v->has_new_surfaces)
+        context_parallel_for(renderer->context, frame->tile_count, take_surfaces, frame);
+    v->has_new_surfaces = false;
 }
 
 /* All steps but the last are waited for, so that progress can be told. */

@@ -3,9 +3,12 @@
 #ifndef HELIOSTAT_SRC_VULKAN_FRAME_H
 #define HELIOSTAT_SRC_VULKAN_FRAME_H
 
+#include "vulkan/device_choice.h"
 #include "vulkan/light.h"
 #include "vulkan/points.h"
+#include "vulkan/raster.h"
 #include "vulkan/renderer.h"
+#include "vulkan/textures.h"
 
 enum { PRIMARY_EDGE = 8, BACKGROUND_THREADS = 64 }; /* pixels of a work group: along its edges; in a row */
 
@@ -38,15 +41,35 @@ struct vulkan_renderer {
     vulkan_light light;
     vulkan_points points;
     bool traces;      /* camera rays too; else the CPU does */
+    bool catches;     /* shadows, on the ground */
     struct hits seen; /* what the lists of points belong to, without arrays */
     bool has_points;  /* the lists are those of the step in hand */
     shade_shape shape;
     VkPipeline primary, list_groups, shade, background;
+    primary_way way;                             /* how camera rays find triangles */
+    vulkan_raster raster;                        /* where that is not by rays; else nothing, as is: */
+    VkPipeline primary_drawn;                    /* for triangles that the rasteriser found */
     VkPipeline shade_tiles;                      /* where points that shine weigh tiles; else nothing */
     vulkan_buffer step, counts, picture, object; /* on the device */
-    vulkan_buffer picture_back, object_back;
+    vulkan_buffer caught;                        /* for a shadow catcher; else nothing, as is: */
+    vulkan_buffer picture_back, object_back, caught_back;
     vulkan_buffer nodes, triangles, normals; /* for rays; else nothing */
+    vulkan_textures textures;                /* for camera rays; else nothing */
+    vulkan_buffer surfaces, surfaces_back;   /* for layers found by the device; else nothing */
+    bool has_new_surfaces;                   /* which are not in the picture yet */
 };
+
+/* Does the device find the layers of the picture? */
+static inline bool finds_layers(const struct vulkan_renderer *v, const helio_renderer *renderer)
+{
+    return v->traces && renderer->desc.aovs;
+}
+
+/* Is the ground a shadow catcher? */
+static inline bool catches_shadows(const helio_renderer *renderer)
+{
+    return renderer->desc.scene->ground == HELIO_GROUND_SHADOW;
+}
 
 /* Are shadow rays wanted? */
 static inline bool casts_rays(const helio_renderer *renderer)

@@ -54,7 +54,8 @@ static const char *reason(VkResult result)
     case VK_ERROR_OUT_OF_HOST_MEMORY: return "the machine has no memory left";
     case VK_ERROR_OUT_OF_DEVICE_MEMORY: return "the device has no memory left";
     case VK_ERROR_INITIALIZATION_FAILED: return "the driver could not be started";
-    case VK_ERROR_DEVICE_LOST: return "the device was lost; what it computed is gone";
+    case VK_ERROR_DEVICE_LOST:
+        return "the device was lost, and with it what it computed; start again, or compute on the CPU";
     case VK_ERROR_INCOMPATIBLE_DRIVER: return "no driver was found";
     case VK_ERROR_LAYER_NOT_PRESENT: return "a layer is not installed";
     case VK_ERROR_EXTENSION_NOT_PRESENT: return "the driver lacks an extension";

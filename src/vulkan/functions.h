@@ -22,6 +22,7 @@
     X(GetPhysicalDeviceFeatures2)                                                                                      \
     X(GetPhysicalDeviceMemoryProperties)                                                                               \
     X(GetPhysicalDeviceQueueFamilyProperties)                                                                          \
+    X(GetPhysicalDeviceImageFormatProperties)                                                                          \
     X(CreateDevice)                                                                                                    \
     X(GetDeviceProcAddr)
 
@@ -45,6 +46,17 @@
     X(FreeMemory)                                                                                                      \
     X(BindBufferMemory)                                                                                                \
     X(MapMemory)                                                                                                       \
+    X(CreateImage)                                                                                                     \
+    X(DestroyImage)                                                                                                    \
+    X(GetImageMemoryRequirements)                                                                                      \
+    X(BindImageMemory)                                                                                                 \
+    X(CreateImageView)                                                                                                 \
+    X(DestroyImageView)                                                                                                \
+    X(CreateRenderPass)                                                                                                \
+    X(DestroyRenderPass)                                                                                               \
+    X(CreateFramebuffer)                                                                                               \
+    X(DestroyFramebuffer)                                                                                              \
+    X(CreateGraphicsPipelines)                                                                                         \
     X(CreateShaderModule)                                                                                              \
     X(DestroyShaderModule)                                                                                             \
     X(CreatePipelineLayout)                                                                                            \
@@ -74,6 +86,10 @@
     X(CmdPushConstants)                                                                                                \
     X(CmdDispatchIndirect)                                                                                             \
     X(CmdDispatch)                                                                                                     \
+    X(CmdBeginRenderPass)                                                                                              \
+    X(CmdEndRenderPass)                                                                                                \
+    X(CmdDraw)                                                                                                         \
+    X(CmdCopyImageToBuffer)                                                                                            \
     X(CmdCopyBuffer)                                                                                                   \
     X(CmdUpdateBuffer)                                                                                                 \
     X(CmdFillBuffer)

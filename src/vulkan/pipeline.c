@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-static helio_status create_module(helio_device *device, const char *name, VkShaderModule *module)
+helio_status pipeline_load_shader(helio_device *device, const char *name, VkShaderModule *module)
 {
     const shader_code *code = NULL;
     for (size_t i = 0; i < shader_code_count; i++)
@@ -28,7 +28,7 @@ helio_status pipeline_create(helio_device *device, const pipeline_desc *desc, Vk
     const VkSpecializationInfo special = {desc->constant_count, entries, desc->constant_count * sizeof(uint32_t),
                                           desc->constants};
     VkShaderModule module;
-    HELIO_TRY(create_module(device, desc->shader, &module));
+    HELIO_TRY(pipeline_load_shader(device, desc->shader, &module));
     const VkComputePipelineCreateInfo create = {.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
                                                 .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                                                           .stage = VK_SHADER_STAGE_COMPUTE_BIT,

@@ -13,6 +13,9 @@ typedef struct pipeline_desc {
     uint32_t constants[PIPELINE_CONSTANTS]; /* ... of which the first is the size of a work group */
 } pipeline_desc;
 
+/* A shader by its name; to be destroyed. */
+helio_status pipeline_load_shader(helio_device *device, const char *name, VkShaderModule *module);
+
 helio_status pipeline_create(helio_device *device, const pipeline_desc *desc, VkPipeline *out);
 void pipeline_destroy(helio_device *device, VkPipeline *pipeline);
 

@@ -5,6 +5,10 @@
 
 #include <string.h>
 
+_Static_assert((int)LAYOUT_HIT_OBJECT == (int)HIT_OBJECT && (int)LAYOUT_HIT_PLANE == (int)HIT_PLANE &&
+                   (int)LAYOUT_HIT_CATCHER == (int)HIT_CATCHER,
+               "what is stored is what shaders know");
+
 static helio_status create_pair(helio_device *device, uint64_t count, uint64_t size, const char *name,
                                 vulkan_buffer *on_device, vulkan_buffer *staging)
 {
@@ -12,15 +16,10 @@ static helio_status create_pair(helio_device *device, uint64_t count, uint64_t s
     return buffer_create(device, BUFFER_UPLOAD, count, size, name, staging);
 }
 
-static uint64_t greater(uint64_t a, uint64_t b)
-{
-    return a > b ? a : b;
-}
-
 static helio_status create_buffers(vulkan_points *points, const helio_scene *scene, uint64_t pixels)
 {
     helio_device *device = points->device;
-    const uint64_t own = points->has_own_materials ? greater(pixels, scene->mesh->material_count) : 0;
+    const uint64_t own = points->has_own_materials ? pixels + scene->mesh->material_count : 0;
     const uint64_t materials = LAYOUT_SHARED_MATERIALS + own;
     HELIO_TRY(buffer_create(device, BUFFER_ON_DEVICE, 2, sizeof(uint32_t), "the lengths of lists", &points->counts));
     HELIO_TRY(buffer_create(device, BUFFER_ON_DEVICE, 9, sizeof(uint32_t), "the work groups", &points->groups));
@@ -74,12 +73,22 @@ static struct layout_material describe_material(const helio_material *material)
     };
 }
 
+static struct layout_material describe_own_material(const helio_mesh *mesh, uint32_t number)
+{
+    struct layout_material material = describe_material(&mesh->materials[number]);
+    if (mesh->texture_count != 0) {
+        material.base_colour = mesh->material_textures[number].base_colour;
+        material.metallic_roughness = mesh->material_textures[number].metallic_roughness;
+    }
+    return material;
+}
+
 /* See read_origin() in rays.glsl. */
-static void stage_origin(vulkan_points *points, const helio_scene *scene, const hit_surface *surface)
+static void stage_origin(vulkan_points *points, const helio_scene *scene, hit_kind kind, const hit_surface *surface)
 {
     float *to = (float *)points->origins_staging.mapped + 4 * (size_t)points->point_count;
     const scene_shadow shadow = scene_prepare_shadow(scene, surface->position, surface->geometric_normal);
-    const uint32_t known = (shadow.underside ? 1u : 0u) | (shadow.far ? 2u : 0u);
+    const uint32_t known = (shadow.underside ? 1u : 0u) | (shadow.far ? 2u : 0u) | (kind == HIT_CATCHER ? 4u : 0u);
     vec3_to(shadow.origin, to);
     memcpy(to + 3, &known, sizeof known);
 }
@@ -101,7 +110,7 @@ static void stage_point(vulkan_points *points, const struct frame *frame, size_t
     }
     *to = point;
     if (points->casts_rays)
-        stage_origin(points, frame->renderer->desc.scene, surface);
+        stage_origin(points, frame->renderer->desc.scene, (hit_kind)hits->kinds[pixel], surface);
     points->point_count++;
 }
 
@@ -142,12 +151,9 @@ helio_status points_upload_materials(vulkan_points *points, vulkan_commands *com
     materials[LAYOUT_MATERIAL_OBJECT] = describe_material(&scene->material);
     materials[LAYOUT_MATERIAL_GROUND] = describe_material(&scene->ground_material);
     for (uint32_t i = 0; i < own; i++)
-        materials[LAYOUT_SHARED_MATERIALS + i] = describe_material(&scene->mesh->materials[i]);
-    HELIO_TRY(commands_begin(commands));
-    commands_copy(commands, &points->materials_staging, &points->materials,
-                  (LAYOUT_SHARED_MATERIALS + own) * sizeof *materials);
-    HELIO_TRY(commands_submit(commands));
-    return commands_wait(commands);
+        materials[LAYOUT_SHARED_MATERIALS + i] = describe_own_material(scene->mesh, i);
+    return commands_copy_now(commands, &points->materials_staging, &points->materials,
+                             (LAYOUT_SHARED_MATERIALS + own) * sizeof *materials);
 }
 
 void points_record_upload(const vulkan_points *points, vulkan_commands *commands)

@@ -23,7 +23,8 @@ void points_destroy(vulkan_points *points);
 /* Makes lists of the hits of a frame; not while a list of commands that copies them is on its way. */
 void points_stage(vulkan_points *points, const struct frame *frame);
 
-/* The materials of all points and of the triangles, at once, for a device that traces camera rays itself. */
+/* The materials of all points and of the triangles, at once, for a device that traces camera rays itself. Where there
+ * are textures, those of single points come behind. */
 helio_status points_upload_materials(vulkan_points *points, vulkan_commands *commands, const helio_scene *scene);
 
 /* Records the copy, without a barrier behind. */

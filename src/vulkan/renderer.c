@@ -92,10 +92,20 @@ static helio_status create_tree(struct vulkan_renderer *v, const helio_renderer 
     helio_status status = upload_tree(v, &tree);
     if (status == HELIO_OK && v->traces)
         status = upload_normals(v, renderer, &tree);
+    if (status == HELIO_OK && v->traces && textures_are_seen(renderer->desc.scene))
+        status = textures_create(&v->slots[0].commands, renderer->desc.scene, &tree, &v->textures);
     bvh_destroy(&tree);
     if (status == HELIO_OK && v->traces)
         status = points_upload_materials(&v->points, &v->slots[0].commands, renderer->desc.scene);
     return status;
+}
+
+/* LAYOUT_SHADOWS_... */
+static uint32_t shadows_of(const helio_renderer *renderer)
+{
+    if (catches_shadows(renderer))
+        return LAYOUT_SHADOWS_CAUGHT;
+    return casts_rays(renderer) ? LAYOUT_SHADOWS_CAST : LAYOUT_SHADOWS_NONE;
 }
 
 static helio_status create_shade_tiles(struct vulkan_renderer *v, const helio_renderer *renderer)
@@ -103,10 +113,27 @@ static helio_status create_shade_tiles(struct vulkan_renderer *v, const helio_re
     const struct layout_state *state = &v->light.state;
     const uint32_t threads = device_is_software(v->device) ? TILE_THREADS_OF_SOFTWARE : TILE_THREADS;
     const uint32_t kinds = points_kinds(renderer->desc.scene);
-    const pipeline_desc desc = {"shade_tiles", 3, {threads, kinds, casts_rays(renderer)}};
+    const pipeline_desc desc = {"shade_tiles", 3, {threads, kinds, shadows_of(renderer)}};
     if (state->light != LAYOUT_LIGHT_BINS || state->surface != LAYOUT_SURFACE_BRDF || kinds == 1u << LAYOUT_DIFFUSE)
         return HELIO_OK;
     return pipeline_create(v->device, &desc, &v->shade_tiles);
+}
+
+/* The rasteriser looks through the centres of pixels only. The clock of software does not wait for computing, so that
+ * nothing can be measured there. */
+static helio_status create_raster(struct vulkan_renderer *v, const helio_renderer *renderer, pipeline_desc primary)
+{
+    const helio_renderer_desc *desc = &renderer->desc;
+    const primary_way way = device_choice_primary();
+    if (way == PRIMARY_BY_FASTER && device_is_software(v->device))
+        return HELIO_OK;
+    if (way == PRIMARY_BY_RAYS || !v->traces || desc->aa != 1 ||
+        !raster_is_possible(v->device, desc->width, desc->height))
+        return HELIO_OK;
+    primary.constants[primary.constant_count++] = true;
+    v->way = way;
+    HELIO_TRY(raster_create(v->device, desc->width, desc->height, desc->scene->mesh->triangle_count, &v->raster));
+    return pipeline_create(v->device, &primary, &v->primary_drawn);
 }
 
 static helio_status create_passes(struct vulkan_renderer *v, const helio_renderer *renderer)
@@ -116,24 +143,33 @@ static helio_status create_passes(struct vulkan_renderer *v, const helio_rendere
     const pipeline_desc shade = {"shade",
                                  7,
                                  {v->shape.threads, v->shape.points, v->shape.lanes, points_kinds(renderer->desc.scene),
-                                  state->light, state->surface, casts_rays(renderer)}};
-    const pipeline_desc background = {"background", 1, {BACKGROUND_THREADS}};
-    const pipeline_desc primary = {"primary", 1, {PRIMARY_THREADS}}, list_groups = {"list_groups", 1, {1}};
+                                  state->light, state->surface, shadows_of(renderer)}};
+    const pipeline_desc background = {"background", 2, {BACKGROUND_THREADS, shadows_of(renderer)}};
+    const pipeline_desc primary = {
+        "primary", 3, {PRIMARY_THREADS, textures_are_seen(renderer->desc.scene), finds_layers(v, renderer)}};
+    const pipeline_desc list_groups = {"list_groups", 1, {1}};
     if (v->traces)
         HELIO_TRY(pipeline_create(v->device, &primary, &v->primary));
+    HELIO_TRY(create_raster(v, renderer, primary));
     HELIO_TRY(pipeline_create(v->device, &list_groups, &v->list_groups));
     HELIO_TRY(pipeline_create(v->device, &shade, &v->shade));
     HELIO_TRY(pipeline_create(v->device, &background, &v->background));
     return create_shade_tiles(v, renderer);
 }
 
-static helio_status create_buffers(struct vulkan_renderer *v, uint64_t pixels)
+static helio_status create_buffers(struct vulkan_renderer *v, const helio_renderer *renderer)
 {
+    const uint64_t pixels = (uint64_t)renderer->desc.width * renderer->desc.height;
+    const uint64_t caught = catches_shadows(renderer) ? pixels : 0, layers = finds_layers(v, renderer) ? pixels : 0;
     const uint64_t colour = 4 * sizeof(float), number = sizeof(float), counts = sizeof(struct layout_counts);
     HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, 1, sizeof(struct layout_step), "a step", &v->step));
     HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, 1, counts, "the counts", &v->counts));
     HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, pixels, colour, "the picture", &v->picture));
     HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, pixels, number, "the object's coverage", &v->object));
+    HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, caught, 2 * colour, "the shadow catcher", &v->caught));
+    HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, caught, 2 * colour, "the shadow catcher", &v->caught_back));
+    HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, layers, 3 * colour, "the layers", &v->surfaces));
+    HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, layers, 3 * colour, "the layers", &v->surfaces_back));
     HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, pixels, colour, "the picture", &v->picture_back));
     return buffer_create(v->device, BUFFER_READBACK, pixels, number, "the object's coverage", &v->object_back);
 }
@@ -152,27 +188,17 @@ static helio_status create_parts(struct vulkan_renderer *v, const helio_renderer
     if (!device_is_software(v->device)) /* which is slower at cubes than our own loops on the same processor */
         HELIO_TRY(light_take_maps(&v->light, desc->environment));
     HELIO_TRY(points_create(v->device, desc->scene, casts_rays(renderer), desc->width, desc->height, &v->points));
-    HELIO_TRY(create_buffers(v, (uint64_t)desc->width * desc->height));
+    HELIO_TRY(create_buffers(v, renderer));
     HELIO_TRY(create_tree(v, renderer));
     return create_passes(v, renderer);
 }
 
 static helio_status check(const helio_renderer *renderer)
 {
-    if (renderer->desc.scene->ground == HELIO_GROUND_SHADOW)
-        return fail(HELIO_ERR_UNSUPPORTED,
-                    "graphics processors have no shadow catcher yet; take another ground, or compute "
-                    "on the CPU (--backend cpu)");
     if (renderer->extras.keeps_sums || renderer->extras.lighting != NULL)
         return fail(HELIO_ERR_UNSUPPORTED,
                     "references are not made on graphics processors; compute on the CPU (--backend cpu)");
     return HELIO_OK;
-}
-
-/* Textures are the CPU's. */
-static bool can_trace(const helio_scene *scene)
-{
-    return !scene->own_materials || scene->mesh->texture_count == 0;
 }
 
 helio_status vulkan_renderer_create(helio_renderer *renderer)
@@ -183,7 +209,8 @@ helio_status vulkan_renderer_create(helio_renderer *renderer)
         return HELIO_ERR_MEMORY;
     v->context = renderer->context;
     v->device = renderer->desc.device;
-    v->traces = can_trace(renderer->desc.scene) && !renderer->desc.aovs && !renderer->extras.cpu_rays;
+    v->catches = catches_shadows(renderer);
+    v->traces = !renderer->extras.cpu_rays;
     helio_status status = create_parts(v, renderer);
     if (status != HELIO_OK) {
         vulkan_renderer_destroy(v);
@@ -197,8 +224,9 @@ void vulkan_renderer_destroy(struct vulkan_renderer *v)
 {
     if (v == NULL)
         return;
-    vulkan_buffer *const all[] = {&v->step,        &v->counts, &v->picture,   &v->object,  &v->picture_back,
-                                  &v->object_back, &v->nodes,  &v->triangles, &v->normals, NULL};
+    vulkan_buffer *const all[] = {&v->step,        &v->counts,   &v->picture,       &v->object,  &v->picture_back,
+                                  &v->object_back, &v->nodes,    &v->triangles,     &v->normals, &v->caught,
+                                  &v->caught_back, &v->surfaces, &v->surfaces_back, NULL};
     for (int i = 0; i < LIGHT_SLOTS; i++) {
         commands_destroy(&v->slots[i].commands);
         buffer_destroy(v->device, &v->slots[i].counts_back);
@@ -208,9 +236,12 @@ void vulkan_renderer_destroy(struct vulkan_renderer *v)
     pipeline_destroy(v->device, &v->shade);
     pipeline_destroy(v->device, &v->background);
     pipeline_destroy(v->device, &v->primary);
+    pipeline_destroy(v->device, &v->primary_drawn);
+    raster_destroy(&v->raster);
     pipeline_destroy(v->device, &v->list_groups);
     pipeline_destroy(v->device, &v->shade_tiles);
     points_destroy(&v->points);
+    textures_destroy(&v->textures);
     light_destroy(&v->light);
     context_release(v->context, v);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * renderer.h - frames on a device. Camera rays are the CPU's: what they met is handed over when it changes. */
+ * renderer.h - frames on a device. */
 #ifndef HELIOSTAT_SRC_VULKAN_RENDERER_H
 #define HELIOSTAT_SRC_VULKAN_RENDERER_H
 
