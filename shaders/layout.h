@@ -66,6 +66,10 @@
 #define LAYOUT_HIT_OBJECT 1
 #define LAYOUT_HIT_PLANE 2
 
+/* How a picture is shown, as bits: see show.comp. */
+#define LAYOUT_SHOW_REINHARD 1u
+#define LAYOUT_SHOW_ALPHA 2u
+
 /* sum x 2^-exponent, see row_sum in tables.h. */
 struct layout_row_sum {
     UINT sum;

@@ -5,6 +5,7 @@
 
 #include "cpu/renderer.h"
 #include "env/environment.h"
+#include "image/tonemap.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -293,6 +294,50 @@ static void frames_on_their_way_do_not_mix(void **state)
     destroy_stage(&s);
 }
 
+static bool stop_after_two(void *user, float done)
+{
+    uint32_t *calls = user;
+    assert_true(done > 0.0f && done <= 1.0f);
+    return ++*calls < 2;
+}
+
+/* In place of radiance, or beside it; also of a frame that has stopped. */
+static void what_is_shown_is_what_the_cpu_shows(void **state)
+{
+    const helio_renderer_desc desc = {
+        .strategy = HELIO_STRATEGY_FACE, .aa = 4, .spp = 8, .pool_length = 64, .background = HELIO_BACKGROUND_NONE};
+    stage s = make_stage(MATERIALS[0], &desc);
+    (void)state;
+    light_stage_with(&s, 3);
+    for (uint32_t i = 0; i < 5; i++) {
+        uint32_t calls = 0, off = 0;
+        const helio_picture_write_desc look = {
+            .exposure = -1.0f, .tonemap = (helio_tonemap)(i % 2), .alpha = i / 2 % 2};
+        s.frame.shown = &look;
+        s.frame.no_radiance = i % 2;
+        s.frame.progress = i == 4 ? stop_after_two : NULL;
+        s.frame.user = &calls;
+        assert_ok(helio_renderer_render(s.vulkan, &s.frame, NULL));
+        const helio_picture found = helio_renderer_picture(s.vulkan);
+        assert_true((found.rgba == NULL) == s.frame.no_radiance && (found.object == NULL) == s.frame.no_radiance);
+        s.frame.no_radiance = false;
+        s.frame.progress = NULL;
+        assert_ok(helio_renderer_render(s.cpu, &s.frame, NULL));
+        const helio_picture expected = helio_renderer_picture(s.cpu);
+        for (size_t k = 0; k < WIDTH * HEIGHT; k++) {
+            uint8_t own[4];
+            tonemap_shown((found.rgba != NULL ? found : expected).rgba + 4 * k, &look, own);
+            for (size_t c = 0; c < 4; c++) {
+                const int distance = abs((int)found.shown[4 * k + c] - (int)own[c]);
+                assert_true(distance <= 1);
+                off += distance > 0;
+            }
+        }
+        print_message("%u of %d bytes are the next\n", off, 4 * WIDTH * HEIGHT);
+    }
+    destroy_stage(&s);
+}
+
 /* AUTO leaves even light to the BRDF, and comes back when it is even no more. */
 static void even_light_is_not_aimed_at(void **state)
 {
@@ -325,13 +370,6 @@ static void black_maps_give_black_pictures(void **state)
 }
 
 /* ---- what a caller may do ---- */
-
-static bool stop_after_two(void *user, float done)
-{
-    uint32_t *calls = user;
-    assert_true(done > 0.0f && done <= 1.0f);
-    return ++*calls < 2;
-}
 
 static void frames_stop_when_told_to(void **state)
 {
@@ -615,6 +653,7 @@ int main(void)
         cmocka_unit_test(settings_do_what_they_do_on_the_cpu),
         cmocka_unit_test(sequences_give_the_pictures_of_the_cpu),
         cmocka_unit_test(frames_on_their_way_do_not_mix),
+        cmocka_unit_test(what_is_shown_is_what_the_cpu_shows),
         cmocka_unit_test(even_light_is_not_aimed_at),
         cmocka_unit_test(black_maps_give_black_pictures),
         cmocka_unit_test(frames_stop_when_told_to),

@@ -225,15 +225,15 @@ static void record_shading(struct vulkan_renderer *v, vulkan_commands *commands)
     commands_label_end(commands);
 }
 
-static void record_read_back(const struct vulkan_renderer *v, frame_slot *slot, bool wants_picture)
+/* What a step has counted, and after the last the picture. */
+static void record_read_back(const struct vulkan_renderer *v, frame_slot *slot, const helio_frame_desc *desc,
+                             bool is_last)
 {
     vulkan_commands *commands = &slot->commands;
     commands_copy(commands, &v->counts, &slot->counts_back, sizeof(struct layout_counts));
     commands_copy(commands, &v->points.counts, &slot->lists_back, 2 * sizeof(uint32_t));
-    if (!wants_picture)
-        return;
-    commands_copy(commands, &v->picture, &v->picture_back, v->picture.bytes);
-    commands_copy(commands, &v->object, &v->object_back, v->object.bytes);
+    if (is_last)
+        read_back_record(&v->back, commands, desc);
 }
 
 /* Starts with what the step needs that is not there yet: the tables of the frame, the pools of the pass, the points. */
@@ -269,7 +269,7 @@ static void record_step(struct vulkan_renderer *v, frame_slot *slot, const struc
     marks->pools = commands_mark(commands);
     record_shading(v, commands);
     marks->shaded = commands_mark(commands);
-    record_read_back(v, slot, !desc->no_picture);
+    record_read_back(v, slot, desc, frame->step.is_last);
     marks->back = commands_mark(commands);
 }
 
@@ -306,15 +306,32 @@ static void develop_stopped(helio_renderer *renderer, double weight)
     }
 }
 
-static void take_picture(helio_renderer *renderer, const struct frame *frame, bool has_stopped)
+/* The sums of such a frame come back now, and the rest is done here. */
+static helio_status take_stopped(helio_renderer *renderer, frame_slot *slot, const helio_frame_desc *desc,
+                                 double weight)
 {
     const struct vulkan_renderer *v = renderer->vulkan;
-    const struct film *film = &renderer->film;
-    const size_t pixels = (size_t)film->width * film->height;
-    memcpy(film->rgba, v->picture_back.mapped, pixels * 4 * sizeof *film->rgba);
-    memcpy(film->object, v->object_back.mapped, pixels * sizeof *film->object);
-    if (has_stopped && !frame->step.is_last)
-        develop_stopped(renderer, frame->weight);
+    const helio_frame_desc sums = {.no_picture = desc->no_picture};
+    if (desc->no_picture)
+        return HELIO_OK;
+    HELIO_TRY(commands_begin(&slot->commands));
+    read_back_record(&v->back, &slot->commands, &sums);
+    HELIO_TRY(commands_submit(&slot->commands));
+    HELIO_TRY(commands_wait(&slot->commands));
+    read_back_take(&v->back, &sums, &renderer->film);
+    develop_stopped(renderer, weight);
+    if (desc->shown != NULL)
+        film_show(renderer->context, &renderer->film, desc->shown);
+    return HELIO_OK;
+}
+
+static helio_status take_picture(helio_renderer *renderer, frame_slot *slot, const struct frame *frame,
+                                 const helio_frame_desc *desc)
+{
+    if (slot->info.stopped && !frame->step.is_last)
+        return take_stopped(renderer, slot, desc, frame->weight);
+    read_back_take(&renderer->vulkan->back, desc, &renderer->film);
+    return HELIO_OK;
 }
 
 /* All steps but the last are waited for, so that progress can be told. */
@@ -352,8 +369,7 @@ helio_status vulkan_renderer_render(helio_renderer *renderer, const helio_frame_
     HELIO_TRY(light_send(&v->light, index));
     HELIO_TRY(run_steps(renderer, index, &frame, desc));
     v->next = 1 - index;
-    if (!desc->no_picture)
-        take_picture(renderer, &frame, v->slots[index].info.stopped);
+    HELIO_TRY(take_picture(renderer, &v->slots[index], &frame, desc));
     *info = desc->no_picture ? v->latest_info : v->slots[index].info;
     return HELIO_OK;
 }

@@ -5,6 +5,7 @@
 
 #include "vulkan/light.h"
 #include "vulkan/points.h"
+#include "vulkan/read_back.h"
 #include "vulkan/renderer.h"
 
 enum { PRIMARY_EDGE = 8, BACKGROUND_THREADS = 64 }; /* pixels of a work group: along its edges; in a row */
@@ -44,7 +45,7 @@ struct vulkan_renderer {
     VkPipeline primary, list_groups, shade, background;
     VkPipeline shade_tiles;                      /* where points that shine weigh tiles; else nothing */
     vulkan_buffer step, counts, picture, object; /* on the device */
-    vulkan_buffer picture_back, object_back;
+    vulkan_read_back back;
     vulkan_buffer nodes, triangles, normals; /* for rays; else nothing */
 };
 

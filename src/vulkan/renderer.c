@@ -134,8 +134,7 @@ static helio_status create_buffers(struct vulkan_renderer *v, uint64_t pixels)
     HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, 1, counts, "the counts", &v->counts));
     HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, pixels, colour, "the picture", &v->picture));
     HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, pixels, number, "the object's coverage", &v->object));
-    HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, pixels, colour, "the picture", &v->picture_back));
-    return buffer_create(v->device, BUFFER_READBACK, pixels, number, "the object's coverage", &v->object_back);
+    return read_back_create(v->device, &v->picture, &v->object, (uint32_t)pixels, &v->back);
 }
 
 static helio_status create_parts(struct vulkan_renderer *v, const helio_renderer *renderer)
@@ -197,14 +196,15 @@ void vulkan_renderer_destroy(struct vulkan_renderer *v)
 {
     if (v == NULL)
         return;
-    vulkan_buffer *const all[] = {&v->step,        &v->counts, &v->picture,   &v->object,  &v->picture_back,
-                                  &v->object_back, &v->nodes,  &v->triangles, &v->normals, NULL};
+    vulkan_buffer *const all[] = {&v->step,  &v->counts,    &v->picture, &v->object,
+                                  &v->nodes, &v->triangles, &v->normals, NULL};
     for (int i = 0; i < LIGHT_SLOTS; i++) {
         commands_destroy(&v->slots[i].commands);
         buffer_destroy(v->device, &v->slots[i].counts_back);
         buffer_destroy(v->device, &v->slots[i].lists_back);
     }
     buffers_destroy(v->device, all);
+    read_back_destroy(&v->back);
     pipeline_destroy(v->device, &v->shade);
     pipeline_destroy(v->device, &v->background);
     pipeline_destroy(v->device, &v->primary);
