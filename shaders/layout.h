@@ -135,6 +135,23 @@ struct layout_patch {
     UINT weight, row, column, shape;
 };
 
+/* A sky, see sky_parts in sky_cube.h and sky_light in sky_model.h; behind it the texels in which the sun is seen. */
+struct layout_sky {
+    FLOAT sun[3];
+    FLOAT horizon[3], horizon_exponent[3];
+    FLOAT constant[3], glow[3], glow_exponent[3], rayleigh[3], mie[3], mie_near[3], mie_far[3], zenith[3];
+    FLOAT even[3];
+    FLOAT ground[3];
+    UINT samples; /* along an edge of a texel */
+    UINT sun_count;
+    UINT padding;
+};
+
+struct layout_sun_texel {
+    UINT texel;
+    FLOAT rgb[3];
+};
+
 #ifdef VULKAN
 layout(buffer_reference, std430, buffer_reference_align = 4) buffer floats
 {
@@ -284,6 +301,7 @@ _Static_assert(sizeof(struct layout_material) == 48 && sizeof(struct layout_poin
 _Static_assert(sizeof(struct layout_state) == 24 * 8 + 18 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_step) == 12 * 8 + 56 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_map) == 6 * 8 + 6 * 4 + LAYOUT_VIEWS * 20, "as in the shaders");
+_Static_assert(sizeof(struct layout_sky) == 42 * 4 && sizeof(struct layout_sun_texel) == 16, "as in the shaders");
 _Static_assert(sizeof(struct layout_push) == 32, "as in the shaders");
 #endif
 #endif

@@ -555,28 +555,41 @@ static stage make_map_stage(const helio_renderer_desc *desc)
     return s;
 }
 
+/* Every third frame is a sky. */
+static void update_stage(const stage *s, helio_sky *sky, const float *rgb, size_t index, helio_environment_info *info)
+{
+    const helio_sky_desc desc = {.sun = {.azimuth = 160, .elevation = 3.0 * (double)index}, .albedo = 0.2f};
+    if (index % 3 == 2)
+        assert_ok(helio_sky_update(sky, &desc, s->environment, info));
+    else
+        assert_ok(helio_environment_update(s->environment, rgb, info));
+}
+
 /* A device's cubes differ in the last bits, so that a sample's row or column may be another: in few pixels. */
-static void frames_of_maps_give_the_pictures_of_the_cpu(void **state)
+static void frames_of_maps_and_skies_give_the_pictures_of_the_cpu(void **state)
 {
     static float rgb[MAP_NUMBERS];
     const helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_FACE, .spp = 64, .pool_length = 64};
     stage s = make_map_stage(&desc);
     helio_frame_info cpu, vulkan;
     helio_environment_info info;
+    helio_sky *sky;
     (void)state;
+    assert_ok(helio_sky_create(s.context, SIZE, &sky));
     for (size_t i = 0; i < 6; i++) {
         fill_map(rgb, i, i);
-        assert_ok(helio_environment_update(s.environment, rgb, &info));
+        update_stage(&s, sky, rgb, i, &info);
         assert_ok(helio_renderer_render(s.cpu, &s.frame, &cpu));
-        assert_ok(helio_environment_update(s.environment, rgb, NULL));
+        update_stage(&s, sky, rgb, i, NULL);
         assert_ok(helio_renderer_render(s.vulkan, &s.frame, &vulkan));
         assert_true(s.environment->is_late); /* nobody has asked the CPU for it */
         expect_light(&vulkan, &info);
         const difference d = compare_pictures(&s, 1e-3);
-        print_message("a frame of a map: mean %.2e, worst %.2e, %u of %u pixels off\n", d.mean, d.worst, d.off,
+        print_message("a frame of a map or sky: mean %.2e, worst %.2e, %u of %u pixels off\n", d.mean, d.worst, d.off,
                       d.count);
         assert_true(d.mean <= 1e-4 && d.off <= PIXELS_BESIDE * d.count);
     }
+    helio_sky_destroy(sky);
     destroy_stage(&s);
 }
 
@@ -605,8 +618,8 @@ static void counts_belong_to_their_frames(void **state)
     destroy_stage(&s);
 }
 
-/* Nor do maps, once a shape is known. */
-static void maps_take_no_memory(void **state)
+/* Nor do maps, once a shape is known, and skies after the first. */
+static void maps_and_skies_take_no_memory(void **state)
 {
     static float rgb[MAP_NUMBERS];
     memory_count count = {0};
@@ -627,15 +640,21 @@ static void maps_take_no_memory(void **state)
                                      .no_visibility = true,
                                      .device = s.device};
     helio_renderer *renderer;
+    helio_sky *sky;
     assert_ok(helio_renderer_create(context, &own, &renderer));
+    assert_ok(helio_sky_create(context, SIZE, &sky));
     size_t taken = 0;
     s.frame.no_picture = true;
-    for (int i = 0; i < 8; i++) {
-        assert_ok(helio_environment_update(environment, rgb, NULL));
+    stage other = s;
+    other.environment = environment;
+    for (size_t i = 0; i < 9; i++) {
+        update_stage(&other, sky, rgb, i, NULL);
+        assert_true(environment->is_late);
         assert_ok(helio_renderer_render(renderer, &s.frame, NULL));
-        taken = i == 0 ? count.taken : taken;
+        taken = i < 3 ? count.taken : taken;
         assert_int_equal(count.taken, taken);
     }
+    helio_sky_destroy(sky);
     helio_renderer_destroy(renderer);
     helio_environment_destroy(environment);
     assert_int_equal(count.live, live);
@@ -661,9 +680,9 @@ int main(void)
         cmocka_unit_test(renderers_come_and_go_on_a_device),
         cmocka_unit_test(frames_take_no_memory),
         cmocka_unit_test(memory_stays_flat),
-        cmocka_unit_test(frames_of_maps_give_the_pictures_of_the_cpu),
+        cmocka_unit_test(frames_of_maps_and_skies_give_the_pictures_of_the_cpu),
         cmocka_unit_test(counts_belong_to_their_frames),
-        cmocka_unit_test(maps_take_no_memory),
+        cmocka_unit_test(maps_and_skies_take_no_memory),
     };
     return cmocka_run_group_tests_name("vulkan_render", tests, NULL, NULL);
 }

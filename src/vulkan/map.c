@@ -295,6 +295,19 @@ static bool take(void *owner, const map_pixels *pixels, map_pixels *kept)
     return true;
 }
 
+static const sky_parts *take_sky(void *owner, const sky_parts *parts)
+{
+    vulkan_map *map = owner;
+    const helio_environment *environment = map->sink.environment;
+    return vulkan_sky_take(&map->sky, environment->context, parts, environment->frame + 1);
+}
+
+bool map_is_sky(const vulkan_map *map)
+{
+    const helio_environment *environment = map->sink.environment;
+    return environment != NULL && vulkan_sky_is_here(&map->sky, environment->frame);
+}
+
 bool map_is_here(const vulkan_map *map)
 {
     const helio_environment *environment = map->sink.environment;
@@ -320,7 +333,8 @@ static helio_status create_parts(vulkan_map *map, vulkan_commands *const *upload
 helio_status map_create(helio_device *device, helio_environment *environment, vulkan_commands *const *uploads,
                         vulkan_map *map)
 {
-    *map = (vulkan_map){.device = device, .sink = {.owner = map, .take = take}};
+    *map = (vulkan_map){.device = device, .sink = {.owner = map, .take = take, .take_sky = take_sky}};
+    vulkan_sky_begin(device, environment->size, uploads, &map->sky);
     helio_status status = create_parts(map, uploads);
     if (status == HELIO_OK)
         map_sink_join(&map->sink, environment);
@@ -335,6 +349,7 @@ void map_destroy(vulkan_map *map)
         return;
     map_sink_leave(&map->sink);
     release_shape(map);
+    vulkan_sky_end(&map->sky);
     for (int i = 0; i < MAP_COPIES; i++) {
         buffer_destroy(map->device, &map->slots[i].map);
         buffer_destroy(map->device, &map->slots[i].faults_back);

@@ -10,6 +10,7 @@
 #include "env/map_sink.h"
 #include "vulkan/commands.h"
 #include "vulkan/pipeline.h"
+#include "vulkan/sky.h"
 
 enum { MAP_COPIES = 2 };
 
@@ -48,15 +49,19 @@ typedef struct vulkan_map {
     vulkan_buffer starts, patches, weights, large, faults;
     size_t large_count;                                  /* texels whose pixels threads share */
     VkPipeline count[2], resample[2], resample_large[2]; /* of floats and halves: those that were needed so far */
+    vulkan_sky sky;                                      /* skies come the same way */
 } vulkan_map;
 
-/* Joins the environment: from now on its maps come here. uploads: of the slots. */
+/* Joins the environment: from now on its maps and skies come here. uploads: of the slots. */
 helio_status map_create(helio_device *device, helio_environment *environment, vulkan_commands *const *uploads,
                         vulkan_map *map);
 void map_destroy(vulkan_map *map); /* {0} is fine */
 
 /* Whether the environment's present frame is a map that has come here; else its cube must be sent. */
 bool map_is_here(const vulkan_map *map);
+
+/* The same of a sky. */
+bool map_is_sky(const vulkan_map *map);
 
 /* Records the sending of that map, in the slot's upload. */
 void map_record_send(vulkan_map *map, uint32_t slot);
