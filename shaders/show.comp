@@ -7,6 +7,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #include "layout.h"
+#include "elementary.glsl"
 
 layout(local_size_x_id = 0) in;
 
@@ -38,9 +39,10 @@ float exposed(float value, float alpha)
     return bits == INFINITE_BITS ? MUCH : min(value / alpha * push.factor, MUCH);
 }
 
+// The power by functions of our own: of theirs devices promise little, and in software they take long.
 float srgb_encode(float linear)
 {
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1.0 / 2.4) - 0.055;
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * exp2_fast(log2_fast(linear) / 2.4) - 0.055;
 }
 
 uint to_byte(float value)
