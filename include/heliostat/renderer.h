@@ -75,7 +75,7 @@ typedef struct helio_frame_info {
                                                          where it has none. */
     double upload_ms, read_back_ms; /* with a device: map or cube, and points, to it, and the picture back, with
                                         the making of shown */
-    double cube_ms;          /* with a device: map into cube, where it makes that: see helio_environment_update() */
+    double cube_ms;          /* with a device: map or sky into cube, where it makes it; see helio_environment_update */
     helio_bad_pixels bad;    /* of the map, where a device has made the cube; else 0: the update has told */
     double flux[6];          /* of the environment's faces, by the tables: see helio_environment_info */
     uint32_t passes;         /* how often the pools were redrawn */
