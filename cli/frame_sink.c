@@ -111,10 +111,31 @@ static size_t layer_floats(const helio_picture *picture, size_t channels)
     return (size_t)picture->width * picture->height * channels;
 }
 
+static helio_status fail_with_memory(frame_sink *sink)
+{
+    snprintf(sink->error, SINK_ERROR_SIZE, "no memory to write %s while the next frame is rendered", sink->desc.path);
+    return HELIO_ERR_MEMORY;
+}
+
+/* Where that is there, it is all that is written. */
+static helio_status copy_shown(frame_sink *sink, const helio_picture *picture)
+{
+    const size_t bytes = (size_t)picture->width * picture->height * 4;
+    if (sink->shown == NULL)
+        sink->shown = malloc(bytes);
+    if (sink->shown == NULL)
+        return fail_with_memory(sink);
+    memcpy(sink->shown, picture->shown, bytes);
+    sink->picture = (helio_picture){.width = picture->width, .height = picture->height, .shown = sink->shown};
+    return HELIO_OK;
+}
+
 /* The renderer's picture lasts until its next frame. The layers are the same each time. */
 static helio_status copy_picture(frame_sink *sink, const helio_picture *picture)
 {
     helio_picture *copy = &sink->picture;
+    if (picture->shown != NULL)
+        return copy_shown(sink, picture);
     const picture_layer layers[] = {{picture->rgba, &copy->rgba, 4},
                                     {picture->object, &copy->object, 1},
                                     {picture->albedo, &copy->albedo, 3},
@@ -127,11 +148,8 @@ static helio_status copy_picture(frame_sink *sink, const helio_picture *picture)
         channels += layers[i].from != NULL ? layers[i].channels : 0;
     if (sink->memory == NULL)
         sink->memory = malloc(layer_floats(picture, channels) * sizeof sink->memory[0]);
-    if (sink->memory == NULL) {
-        snprintf(sink->error, SINK_ERROR_SIZE, "no memory to write %s while the next frame is rendered",
-                 sink->desc.path);
-        return HELIO_ERR_MEMORY;
-    }
+    if (sink->memory == NULL)
+        return fail_with_memory(sink);
     *copy = (helio_picture){.width = picture->width, .height = picture->height};
     float *place = sink->memory;
     for (size_t i = 0; i < count; i++) {
@@ -232,6 +250,8 @@ helio_status frame_sink_close(frame_sink *sink)
         }
     }
     free(sink->memory);
+    free(sink->shown);
     sink->memory = NULL;
+    sink->shown = NULL;
     return sink->status;
 }

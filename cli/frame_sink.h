@@ -43,6 +43,7 @@ typedef struct frame_sink {
     helio_picture picture; /* its layers are in memory of the sink where has_thread */
     uint64_t index;
     float *memory;
+    uint8_t *shown;
 
     bool has_thread;
     pthread_t thread;
@@ -60,7 +61,8 @@ helio_status frame_sink_open(frame_sink *sink, helio_context *context, const fra
 /* Name of the file that the frame goes to. False if it does not fit. */
 bool frame_sink_name(const frame_sink *sink, uint64_t index, char name[SINK_PATH_SIZE]);
 
-/* Writes the frame, or copies it and has it written. A failure may be one of the frame before. sink->error tells. */
+/* Writes the frame, from its shown where that is there, or copies it and has it written. A failure may be one of the
+ * frame before. sink->error tells. */
 helio_status frame_sink_add(frame_sink *sink, uint64_t index, const helio_picture *picture);
 
 /* Waits until all frames are written. sink->error tells what failed. */

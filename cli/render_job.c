@@ -255,6 +255,8 @@ helio_frame_desc render_job_frame(render_job *job, uint64_t index)
         .seed = options->seed_mode[1] == 'r' ? frame_seed(options->seed, index) : options->seed,
         .progress = progress_update,
         .user = &job->progress,
+        .shown = job->shown,
+        .no_radiance = job->no_radiance,
     };
 }
 

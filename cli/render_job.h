@@ -22,8 +22,10 @@ typedef struct render_job {
     helio_camera camera;
     progress_bar progress;
     frame_warnings warnings;
-    frame_error error;  /* against --reference */
-    uint32_t passes;    /* of the latest frame */
+    frame_error error;                     /* against --reference */
+    uint32_t passes;                       /* of the latest frame */
+    const helio_picture_write_desc *shown; /* what frames are asked for beside radiance, see helio_frame_desc ... */
+    bool no_radiance;                      /* ... or in place of it */
     bool light_is_late; /* the device makes the cube: of the frame's light is told when it is rendered */
 } render_job;
 

@@ -166,11 +166,32 @@ static bool measure_error(render_sequence *sequence, stats_frame *stats)
                       frame_error_measure(&job->error, &picture, sequence->exposure, job->plan.tonemap, stats));
 }
 
+/* Is what is written what a screen shows, of eight bits? */
+static bool writes_shown(const render_plan *plan)
+{
+    return plan->sink == SINK_VIDEO ? !plan->video.hdr : output_file_has_extension(plan->out, "png");
+}
+
+/* Radiance is only asked for where somebody wants it, as it has far to come from a device. */
+static void ask_for_pictures(render_sequence *sequence)
+{
+    render_job *job = sequence->job;
+    const bool is_shown = writes_shown(&job->plan);
+    const bool is_on_sheet =
+        job->plan.options->contact_sheet != NULL && contact_sheet_wants(&sequence->sheet, sequence->frames);
+    sequence->look = (helio_picture_write_desc){.exposure = sequence->exposure,
+                                                .tonemap = job->plan.tonemap,
+                                                .alpha = job->plan.alpha && job->plan.sink != SINK_VIDEO};
+    job->shown = is_shown ? &sequence->look : NULL;
+    job->no_radiance = is_shown && !is_on_sheet && job->error.path == NULL;
+}
+
 static bool render_frame(render_sequence *sequence, const helio_source_frame *frame, stats_frame *stats)
 {
     bool is_whole;
     if (!check_code(sequence, frame_error_prepare(&sequence->job->error, frame->index, stats)))
         return false;
+    ask_for_pictures(sequence);
     if (!check(sequence, render_job_render(sequence->job, frame, stats, &is_whole)))
         return false;
     if (!is_whole)

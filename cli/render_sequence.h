@@ -13,12 +13,13 @@ typedef struct render_sequence {
     frame_sink sink;
     contact_sheet sheet;
     stats_list stats;
-    double started;              /* milliseconds */
-    uint64_t frames;             /* that came */
-    uint64_t skipped;            /* that an earlier run had written */
-    float exposure;              /* stops, of all frames */
-    bool failed;                 /* in the frame that came last, or a signal stopped it */
-    char error[SINK_ERROR_SIZE]; /* why; "" where a sentence on stderr has told it, or a signal came */
+    double started;                /* milliseconds */
+    uint64_t frames;               /* that came */
+    uint64_t skipped;              /* that an earlier run had written */
+    float exposure;                /* stops, of all frames */
+    helio_picture_write_desc look; /* of the frame in hand */
+    bool failed;                   /* in the frame that came last, or a signal stopped it */
+    char error[SINK_ERROR_SIZE];   /* why; "" where a sentence on stderr has told it, or a signal came */
 } render_sequence;
 
 /* Renders and writes what comes, then statistics and contact sheet, also where the sequence ends early. Returns an exit

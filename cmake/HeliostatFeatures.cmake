@@ -103,12 +103,13 @@ if(HELIO_WITH_VULKAN)
     endif()
     set(SHADERS faults resample resample_large rows marginals faces moments evenness pools tiles tile_light bins greatest
         lists draw_lists draw_bins tile_control known control_sums shade shade_tiles background primary list_groups
-        raster.vert raster.frag)
+        raster.vert raster.frag show sky sun)
     include(HeliostatShaders)
     list(APPEND SOURCES src/vulkan/bins.c src/vulkan/buffer.c src/vulkan/bvh.c src/vulkan/commands.c src/vulkan/copy_rate.c src/vulkan/device.c src/vulkan/device_choice.c
          src/vulkan/frame.c src/vulkan/functions.c src/vulkan/handover.c
          src/vulkan/light.c src/vulkan/map.c src/vulkan/pipeline.c src/vulkan/points.c
-         src/vulkan/pools.c src/vulkan/raster.c src/vulkan/renderer.c src/vulkan/tables.c src/vulkan/textures.c)
+         src/vulkan/pools.c src/vulkan/raster.c src/vulkan/read_back.c src/vulkan/renderer.c src/vulkan/sky.c src/vulkan/tables.c
+         src/vulkan/textures.c)
     list(APPEND FEATURE_DEFINITIONS HELIO_WITH_VULKAN=1)
     list(APPEND FEATURE_LIBRARIES ${CMAKE_DL_LIBS})
 else()

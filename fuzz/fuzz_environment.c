@@ -86,9 +86,9 @@ static void draw_samples(helio_environment *environment, fuzz_bytes *bytes)
 
 static void update(helio_environment *environment, fuzz_bytes *bytes, uint32_t width, uint32_t height)
 {
-    static const size_t sizes[] = {12, 16, 6, 8}; /* of a pixel in each format */
+    static const size_t sizes[] = {12, 16, 6, 8, 4}; /* of a pixel in each format */
     uint8_t choice = fuzz_take_byte(bytes);
-    helio_pixel_format format = (helio_pixel_format)(choice % 4);
+    helio_pixel_format format = choice & 8 ? HELIO_PIXELS_RGB9E5 : (helio_pixel_format)(choice % 4);
     size_t pixels = (size_t)width * height, row_bytes = width * sizes[format];
     unsigned char *memory = malloc(pixels * sizes[format]);
     FUZZ_EXPECT(memory != NULL);

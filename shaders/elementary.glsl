@@ -44,6 +44,22 @@ float one_minus_exp2(float x)
     return x > -1.0 ? -x * q : 1.0 - exp2_fast(x);
 }
 
+// The angle whose cosine is 1 - versine, however small it is.
+float angle_of_versine(float versine)
+{
+    const float beyond = max(2.0 - versine, 0.0), near = min(versine, beyond), x = 1.0 - near;
+    float q = -0.0012624911;
+    q = q * x + 0.0066700901;
+    q = q * x - 0.0170881256;
+    q = q * x + 0.0308918810;
+    q = q * x - 0.0501743046;
+    q = q * x + 0.0889789874;
+    q = q * x - 0.2145988016;
+    q = q * x + 1.5707963050;
+    const float angle = sqrt(near) * q;
+    return versine < beyond ? angle : 3.14159265 - angle;
+}
+
 // sin(2 pi t) for |t| <= 1/4
 float sine_of_quarter(float t)
 {

@@ -86,6 +86,10 @@
 #define LAYOUT_SHADOWS_CAST 1
 #define LAYOUT_SHADOWS_CAUGHT 2
 
+/* How a picture is shown, as bits: see show.comp. */
+#define LAYOUT_SHOW_REINHARD 1u
+#define LAYOUT_SHOW_ALPHA 2u
+
 /* sum x 2^-exponent, see row_sum in tables.h. */
 struct layout_row_sum {
     UINT sum;
@@ -155,6 +159,23 @@ struct layout_large {
 /* struct overlap_patch */
 struct layout_patch {
     UINT weight, row, column, shape;
+};
+
+/* A sky, see sky_parts in sky_cube.h and sky_light in sky_model.h; behind it the texels in which the sun is seen. */
+struct layout_sky {
+    FLOAT sun[3];
+    FLOAT horizon[3], horizon_exponent[3];
+    FLOAT constant[3], glow[3], glow_exponent[3], rayleigh[3], mie[3], mie_near[3], mie_far[3], zenith[3];
+    FLOAT even[3];
+    FLOAT ground[3];
+    UINT samples; /* along an edge of a texel */
+    UINT sun_count;
+    UINT padding;
+};
+
+struct layout_sun_texel {
+    UINT texel;
+    FLOAT rgb[3];
 };
 
 #ifdef VULKAN
@@ -336,6 +357,7 @@ _Static_assert(sizeof(struct layout_material) == 48 && sizeof(struct layout_poin
 _Static_assert(sizeof(struct layout_state) == 27 * 8 + 18 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_step) == 16 * 8 + 58 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_map) == 6 * 8 + 6 * 4 + LAYOUT_VIEWS * 20, "as in the shaders");
+_Static_assert(sizeof(struct layout_sky) == 42 * 4 && sizeof(struct layout_sun_texel) == 16, "as in the shaders");
 _Static_assert(sizeof(struct layout_push) == 32, "as in the shaders");
 #endif
 #endif

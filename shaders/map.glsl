@@ -3,7 +3,8 @@
 //
 // By bits throughout: what is no light is told by them, and devices may take the smallest floats for 0.
 
-layout(constant_id = 1) const bool HALF = false; // numbers are IEEE binary16, else floats
+layout(constant_id = 1) const uint NUMBERS = 0u; // map_numbers of map_pixels.h
+const uint FLOATS = 0u, HALVES = 1u, WORDS = 2u;
 
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer map_of_frame
 {
@@ -37,13 +38,22 @@ uint half_bits(uint number)
 
 uint number_bits(uint index)
 {
-    if (!HALF)
+    if (NUMBERS != HALVES)
         return MAP.pixels.at[index];
     return half_bits(MAP.pixels.at[index >> 1] >> (index % 2u * 16u) & 0xffffu);
 }
 
+// A shared exponent: channels of 9 bits by powers of two, exactly.
+uvec3 word_bits(uint word)
+{
+    const float unit = uintBitsToFloat(((word >> 27) + 127u - 24u) << 23);
+    return floatBitsToUint(vec3(uvec3(word, word >> 9, word >> 18) & 511u) * unit);
+}
+
 uvec3 pixel_bits(uint pixel)
 {
+    if (NUMBERS == WORDS)
+        return word_bits(MAP.pixels.at[pixel]);
     const uint first = pixel * MAP.channels;
     return uvec3(number_bits(first), number_bits(first + 1u), number_bits(first + 2u));
 }

@@ -4,6 +4,8 @@
  * progress and stopping, shadow rays, a mesh without a ground and a shadow catcher. */
 #include "support.h"
 
+#include "image/tonemap.h"
+
 #include <heliostat/heliostat.h>
 
 #include <math.h>
@@ -122,12 +124,45 @@ static void a_frame_after_a_stopped_one_is_whole(void **state)
     }
 }
 
+/* Also of a frame that was stopped, and where nobody wants radiance. */
+static void what_is_shown_is_what_a_png_shows(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i < 8; i++) {
+        const helio_picture_write_desc look = {
+            .exposure = (float)(i % 3) - 1.5f, .tonemap = (helio_tonemap)(i % 2), .alpha = i / 2 % 2};
+        stage s = make_stage(3, i < 4 ? HELIO_GROUND_SHADOW : HELIO_GROUND_NONE, 2, 8);
+        int calls = 0;
+        s.frame.shown = &look;
+        s.frame.progress = i == 5 ? stop_at_once : NULL;
+        s.frame.user = &calls;
+        assert_ok(helio_renderer_render(s.renderer, &s.frame, NULL));
+        const helio_picture picture = helio_renderer_picture(s.renderer);
+        for (size_t k = 0; k < WIDTH * HEIGHT; k++) {
+            uint8_t expected[4];
+            tonemap_shown(picture.rgba + 4 * k, &look, expected);
+            assert_memory_equal(picture.shown + 4 * k, expected, 4);
+        }
+        s.frame.no_radiance = true;
+        assert_ok(helio_renderer_render(s.renderer, &s.frame, NULL));
+        assert_null(helio_renderer_picture(s.renderer).rgba);
+        assert_null(helio_renderer_picture(s.renderer).object);
+        s.frame.shown = NULL;
+        assert_ok(helio_renderer_render(s.renderer, &s.frame, NULL));
+        assert_null(helio_renderer_picture(s.renderer).shown);
+        s.frame.shown = &(helio_picture_write_desc){.exposure = NAN};
+        assert_int_equal(helio_renderer_render(s.renderer, &s.frame, NULL), HELIO_ERR_ARGUMENT);
+        destroy_stage(&s);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pictures_do_not_depend_on_threads),
         cmocka_unit_test(kept_camera_rays_give_the_same_picture),
         cmocka_unit_test(a_frame_after_a_stopped_one_is_whole),
+        cmocka_unit_test(what_is_shown_is_what_a_png_shows),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,6 +4,7 @@
 #include "image_support.h"
 
 #include "image/colour.h"
+#include "image/tonemap.h"
 
 #include <errno.h>
 #include <math.h>
@@ -621,17 +622,29 @@ static void test_tonemap_names_parse_back(void **state)
 }
 
 #if HELIO_WITH_PNG
-/* The bytes that one pixel becomes, alpha included if desc->alpha. */
-static void tonemapped(fixture *f, const float rgba[4], const helio_picture_write_desc *desc, unsigned char bytes[4])
+/* The bytes of a picture of one pixel, alpha included if desc->alpha. */
+static void write_and_read(fixture *f, const helio_picture *picture, const helio_picture_write_desc *desc,
+                           unsigned char bytes[4])
 {
     const char *path = fixture_path(f, "test.png");
-    helio_picture picture = {.width = 1, .height = 1, .rgba = rgba};
-    assert_int_equal(helio_picture_write(f->context, path, &picture, desc), HELIO_OK);
+    assert_int_equal(helio_picture_write(f->context, path, picture, desc), HELIO_OK);
     png_image image = {.version = PNG_IMAGE_VERSION};
     assert_true(png_image_begin_read_from_file(&image, path));
     assert_int_equal(image.format, desc->alpha ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB);
     assert_true(png_image_finish_read(&image, NULL, bytes, 0, NULL));
     unlink(path);
+}
+
+/* What that pixel becomes, whoever tone-maps it. */
+static void tonemapped(fixture *f, const float rgba[4], const helio_picture_write_desc *desc, unsigned char bytes[4])
+{
+    uint8_t shown[4];
+    unsigned char again[4] = {0};
+    write_and_read(f, &(helio_picture){.width = 1, .height = 1, .rgba = rgba}, desc, bytes);
+    tonemap_shown(rgba, desc, shown);
+    write_and_read(f, &(helio_picture){.width = 1, .height = 1, .shown = shown}, desc, again);
+    assert_memory_equal(bytes, again, desc->alpha ? 4 : 3);
+    assert_true(desc->alpha || shown[3] == 255);
 }
 
 static void expect_bytes(fixture *f, const float rgba[4], helio_picture_write_desc desc, const char *expected)

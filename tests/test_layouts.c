@@ -688,6 +688,55 @@ static void all_pixel_formats_give_the_same_bits(void **state)
     }
 }
 
+/* Of any words, as each is a good pixel; with every instruction set. words: [height][width]; mirrored: from
+ * below. */
+static void check_words(const char *isa, const map *m, const uint32_t *words, const uint32_t *mirrored)
+{
+    helio_context *context;
+    helio_environment_info expected, info;
+    assert_ok(helio_context_create(&(helio_context_desc){.threads = 1, .isa = isa}, &context));
+    helio_environment *environment = make_environment(context, m->layout, m->width, m->height, 21, m->rgb, &expected);
+    const size_t bytes = cube_bytes(environment);
+    float *plain = malloc(bytes);
+    assert_non_null(plain);
+    memcpy(plain, environment->cube, bytes);
+    for (int i = 0; i < 2; i++) {
+        const ptrdiff_t row_bytes = (ptrdiff_t)(m->width * sizeof *words);
+        const helio_pixels pixels = {words, HELIO_PIXELS_RGB9E5, 0};
+        const helio_pixels upwards = {mirrored + (size_t)(m->height - 1) * m->width, HELIO_PIXELS_RGB9E5, -row_bytes};
+        memset(environment->cube, 0, bytes);
+        assert_ok(helio_environment_update_pixels(environment, i == 0 ? &pixels : &upwards, &info));
+        assert_memory_equal(environment->cube, plain, bytes);
+        assert_memory_equal(&info, &expected, sizeof info);
+    }
+    free(plain);
+    helio_environment_destroy(environment);
+    helio_context_destroy(context);
+}
+
+static void shared_exponents_give_the_bits_of_floats(void **state)
+{
+    (void)state;
+    for (int i = 0; i < SHAPES; i++) {
+        map m = make_map(shapes[i].layout, shapes[i].width, shapes[i].height);
+        uint64_t seed = 57 + (uint64_t)i;
+        const size_t pixels = (size_t)m.width * m.height;
+        uint32_t *words = malloc(pixels * sizeof *words), *mirrored = malloc(pixels * sizeof *words);
+        assert_true(words != NULL && mirrored != NULL);
+        for (size_t p = 0; p < pixels; p++) {
+            words[p] = mirrored[(m.height - 1 - p / m.width) * m.width + p % m.width] = random_bits(&seed);
+            for (size_t c = 0; c < 3; c++)
+                m.rgb[3 * p + c] = ldexpf((float)(words[p] >> 9 * c & 511), (int)(words[p] >> 27) - 24);
+        }
+        const char *isa;
+        for (uint32_t set = 0; (isa = helio_isa_name(set)) != NULL; set++)
+            check_words(isa, &m, words, mirrored);
+        free(words);
+        free(mirrored);
+        free(m.rgb);
+    }
+}
+
 static void bad_pixels_are_refused(void **state)
 {
     (void)state;
@@ -696,7 +745,7 @@ static void bad_pixels_are_refused(void **state)
     helio_environment *environment;
     assert_ok(helio_environment_create(shared_context, &desc, &environment));
     const helio_pixels bad[] = {{NULL, HELIO_PIXELS_RGB_FLOAT, 0},
-                                {memory, (helio_pixel_format)4, 0},
+                                {memory, (helio_pixel_format)5, 0},
                                 {memory, (helio_pixel_format)-1, 0},
                                 {memory, HELIO_PIXELS_RGB_FLOAT, 44},
                                 {memory, HELIO_PIXELS_RGB_FLOAT, -44},
@@ -1049,6 +1098,7 @@ int main(void)
         cmocka_unit_test(maps_with_faults_give_the_bits_of_cleaned_ones),
         cmocka_unit_test(all_half_numbers_have_their_value),
         cmocka_unit_test(all_pixel_formats_give_the_same_bits),
+        cmocka_unit_test(shared_exponents_give_the_bits_of_floats),
         cmocka_unit_test(bad_pixels_are_refused),
         cmocka_unit_test(reshaped_environments_give_the_bits_of_fresh_ones),
         cmocka_unit_test(failed_reshapes_leave_everything_as_it_was),

@@ -49,12 +49,31 @@ static uint16_t to_half(float value)
     return (uint16_t)(sign | (exponent - 112) << 10 | mantissa);
 }
 
+/* Any words are light: see HELIO_PIXELS_RGB9E5. */
+static void make_words(test_map *map, uint32_t width, uint32_t height, bool from_below)
+{
+    const ptrdiff_t row = (ptrdiff_t)width + 3;
+    uint64_t seed = height;
+    uint32_t *words = malloc((size_t)row * height * sizeof *words);
+    assert_non_null(words);
+    for (size_t i = 0; i < (size_t)row * height; i++)
+        words[i] = random_bits(&seed);
+    map->numbers = words;
+    map->pixels = (helio_pixels){.data = from_below ? words + (height - 1) * row : words,
+                                 .format = HELIO_PIXELS_RGB9E5,
+                                 .row_bytes = (from_below ? -row : row) * (ptrdiff_t)sizeof *words};
+}
+
 /* Numbers with some padding behind each row, from below if asked for. */
 static void make_numbers(test_map *map, uint32_t width, uint32_t height, helio_pixel_format format, bool from_below)
 {
     const bool half = format >= HELIO_PIXELS_RGB_HALF;
     const size_t channels = format % 2 == 0 ? 3 : 4, number = half ? 2 : 4;
     const size_t row_bytes = (width * channels + 5) * number;
+    if (format == HELIO_PIXELS_RGB9E5) {
+        make_words(map, width, height, from_below);
+        return;
+    }
     unsigned char *numbers = malloc(height * row_bytes);
     assert_non_null(numbers);
     memset(numbers, 0xff, height * row_bytes); /* padding and alpha are not numbers: nobody may look */
@@ -143,7 +162,7 @@ static double compare_case(vulkan_world *w, const map_case *c, uint64_t seed)
 {
     double worst = 0;
     make_light(w, c);
-    for (uint32_t i = 0; i < 4; i++) {
+    for (uint32_t i = 0; i <= HELIO_PIXELS_RGB9E5; i++) {
         test_map map = make_map(c->width, c->height, seed + i);
         make_numbers(&map, c->width, c->height, (helio_pixel_format)i, i % 2);
         update(w, &map.pixels);
@@ -290,12 +309,124 @@ static void a_map_of_nothing_but_nan_is_black(void **state)
     world_destroy(&w);
 }
 
+/* ---- skies ---- */
+
+/* In relation to a texel's brightest channel. Both compute in float: the worst that was found is 1.6e-6. */
+static const double SKY_BOUND = 1e-5;
+
+static const helio_sky_desc skies[] = {
+    {.sun = {.azimuth = 130, .elevation = 40}, .turbidity = 2, .albedo = 0.3f},
+    {.sun = {.azimuth = -45, .elevation = 35.2644}, .turbidity = 10},       /* in a corner of the cube */
+    {.sun = {.azimuth = 90, .elevation = 45}, .turbidity = 1, .albedo = 1}, /* on an edge */
+    {.sun = {.azimuth = 200, .elevation = 90}, .turbidity = 3.5f},
+    {.sun = {.azimuth = 271, .elevation = 0.1}, .turbidity = 5, .albedo = 0.2f}, /* half set */
+    {.sun = {.azimuth = 10, .elevation = -4}},
+    {.sun = {.azimuth = 10, .elevation = -25}},
+    {.sun = {.azimuth = 33, .elevation = 61, .distance = 0.9}, .no_disc = true},
+};
+
+static void update_sky(vulkan_world *w, helio_sky *sky, const helio_sky_desc *desc)
+{
+    assert_ok(helio_sky_update(sky, desc, w->environment, NULL));
+    assert_true(w->environment->is_late == map_is_sky(&w->light.map));
+    assert_false(map_is_here(&w->light.map));
+}
+
+/* The largest difference of channels, in relation to the brightest of the texel. */
+static double compare_texels(const vulkan_world *w, const float *found)
+{
+    const float *expected = helio_environment_cube(w->environment);
+    double worst = 0;
+    for (size_t i = 0; i < light_cube_bytes(&w->light) / sizeof *found; i += 3) {
+        const double brightest = fmax((double)expected[i], fmax((double)expected[i + 1], (double)expected[i + 2]));
+        for (size_t c = i; c < i + 3; c++) {
+            assert_true(found[c] >= 0 && isfinite(found[c]));
+            worst = fmax(worst, fabs((double)found[c] - (double)expected[c]) / fmax(brightest, 0x1p-126));
+        }
+    }
+    return worst;
+}
+
+/* The cube that the CPU makes when it is asked late is that which it makes at once. */
+static void expect_same_bits(const vulkan_world *w, helio_sky *sky, const helio_sky_desc *desc)
+{
+    helio_environment *other;
+    helio_environment_info info;
+    assert_ok(
+        helio_environment_create(w->context, &(helio_environment_desc){.cube_size = w->environment->size}, &other));
+    assert_ok(helio_sky_update(sky, desc, other, &info));
+    assert_memory_equal(other->cube, w->environment->cube,
+                        (size_t)CUBE_FACES * other->size * other->size * 3 * sizeof(float));
+    helio_environment_destroy(other);
+}
+
+static double compare_sky(vulkan_world *w, helio_sky *sky, const helio_sky_desc *desc)
+{
+    update_sky(w, sky, desc);
+    float *found = read_cube(w);
+    assert_true(w->light.slots[w->light.slot].is_sky == (w->environment->size >= 64));
+    const double worst = compare_texels(w, found);
+    expect_same_bits(w, sky, desc);
+    assert_true(fabs(flux_of(w, found) / flux_of(w, w->environment->cube) - 1) <= 1e-6);
+    free(found);
+    return worst;
+}
+
+/* Even sizes have one place in each texel, odd ones four; the cubes of the least are sent. */
+static void skies_are_those_of_the_cpu(void **state)
+{
+    static const uint32_t sizes[] = {1, 63, 64, 65, 128, 129};
+    vulkan_world w = world_make();
+    helio_sky *sky;
+    (void)state;
+    assert_ok(helio_sky_create(w.context, 512, &sky));
+    for (size_t s = 0; s < sizeof sizes / sizeof *sizes + is_thorough(); s++) {
+        double worst = 0;
+        const uint32_t size = s < sizeof sizes / sizeof *sizes ? sizes[s] : 512;
+        make_light(&w, &(map_case){HELIO_LAYOUT_LATLONG, 8, 4, size});
+        for (size_t i = 0; i < sizeof skies / sizeof *skies; i++)
+            worst = fmax(worst, compare_sky(&w, sky, &skies[i]));
+        world_destroy_light(&w);
+        print_message("skies, cube %u: %.1e\n", size, worst);
+        assert_true(worst <= (size < 64 ? 0.0 : SKY_BOUND));
+    }
+    helio_sky_destroy(sky);
+    world_destroy(&w);
+}
+
+/* Also when the light, and the copy of the sky with it, is gone, or the sky itself. */
+static void a_cube_outlives_its_sky(void **state)
+{
+    vulkan_world w = world_make();
+    (void)state;
+    for (int round = 0; round < 3; round++) {
+        helio_sky *sky;
+        make_light(&w, &(map_case){HELIO_LAYOUT_LATLONG, 8, 4, 64});
+        assert_ok(helio_sky_create(w.context, 64, &sky));
+        update_sky(&w, sky, &skies[round]);
+        if (round == 1)
+            light_destroy(&w.light);
+        if (round == 2) {
+            helio_sky_destroy(sky);
+            assert_ok(helio_sky_create(w.context, 64, &sky));
+        }
+        helio_environment_cube(w.environment);
+        expect_same_bits(&w, sky, &skies[round]);
+        helio_sky_destroy(sky);
+        world_destroy_light(&w);
+    }
+    world_destroy(&w);
+}
+
 /* ---- what a caller may do between frames ---- */
 
 static void expect_same(vulkan_world *w)
 {
     float *found = read_cube(w);
-    assert_true(compare_cubes(w, found) <= BOUND);
+    if (map_is_sky(&w->light.map))
+        assert_true(compare_texels(w, found) <= SKY_BOUND);
+    else
+        assert_true(compare_cubes(w, found) <= BOUND);
     free(found);
 }
 
@@ -306,16 +437,16 @@ static void maps_may_change_from_frame_to_frame(void **state)
     helio_environment_info info;
     helio_sky *sky;
     (void)state;
-    make_light(&w, &(map_case){HELIO_LAYOUT_LATLONG, 8, 4, 24});
-    assert_ok(helio_sky_create(w.context, 24, &sky));
+    make_light(&w, &(map_case){HELIO_LAYOUT_LATLONG, 8, 4, 66});
+    assert_ok(helio_sky_create(w.context, 66, &sky));
     for (uint32_t i = 0; i < 30; i++) {
         const map_case *c = &cases[i / 2 % 8 + 2];
         test_map map = make_map(c->width, c->height, i);
-        make_numbers(&map, c->width, c->height, (helio_pixel_format)(i / 3 % 4), i % 2);
+        make_numbers(&map, c->width, c->height, (helio_pixel_format)(i / 3 % 5), i % 2);
         if (i % 5 != 4)
             assert_ok(helio_environment_reshape(w.environment, c->width, c->height, c->layout));
-        if (i % 7 == 6)
-            assert_ok(helio_sky_update(sky, &(helio_sky_desc){.sun = {.elevation = 2.0 * i}}, w.environment, NULL));
+        if (i % 7 >= 5)
+            update_sky(&w, sky, &(helio_sky_desc){.sun = {.elevation = 2.0 * i, .azimuth = 3.0 * i}});
         else if (w.environment->map.width == c->width && w.environment->map.height == c->height)
             assert_ok(helio_environment_update_pixels(w.environment, &map.pixels, i % 3 == 2 ? &info : NULL));
         expect_same(&w);
@@ -397,6 +528,7 @@ int main(void)
         cmocka_unit_test(cubes_are_those_of_the_cpu),          cmocka_unit_test(a_sun_of_one_pixel_keeps_its_flux),
         cmocka_unit_test(bad_pixels_are_cleaned_and_counted),  cmocka_unit_test(a_map_of_nothing_but_nan_is_black),
         cmocka_unit_test(maps_may_change_from_frame_to_frame), cmocka_unit_test(a_cube_outlives_its_map),
+        cmocka_unit_test(skies_are_those_of_the_cpu),          cmocka_unit_test(a_cube_outlives_its_sky),
         cmocka_unit_test(readers_find_the_cube_of_the_frame),
     };
     return cmocka_run_group_tests_name("vulkan_cube", tests, NULL, NULL);

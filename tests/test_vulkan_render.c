@@ -5,6 +5,7 @@
 
 #include "cpu/renderer.h"
 #include "env/environment.h"
+#include "image/tonemap.h"
 #include "vulkan/frame.h"
 
 #include <math.h>
@@ -483,6 +484,50 @@ static void frames_on_their_way_do_not_mix(void **state)
     destroy_stage(&s);
 }
 
+static bool stop_after_two(void *user, float done)
+{
+    uint32_t *calls = user;
+    assert_true(done > 0.0f && done <= 1.0f);
+    return ++*calls < 2;
+}
+
+/* In place of radiance, or beside it; also of a frame that has stopped. */
+static void what_is_shown_is_what_the_cpu_shows(void **state)
+{
+    const helio_renderer_desc desc = {
+        .strategy = HELIO_STRATEGY_FACE, .aa = 4, .spp = 8, .pool_length = 64, .background = HELIO_BACKGROUND_NONE};
+    stage s = make_stage(MATERIALS[0], &desc);
+    (void)state;
+    light_stage_with(&s, 3);
+    for (uint32_t i = 0; i < 5; i++) {
+        uint32_t calls = 0, off = 0;
+        const helio_picture_write_desc look = {
+            .exposure = -1.0f, .tonemap = (helio_tonemap)(i % 2), .alpha = i / 2 % 2};
+        s.frame.shown = &look;
+        s.frame.no_radiance = i % 2;
+        s.frame.progress = i == 4 ? stop_after_two : NULL;
+        s.frame.user = &calls;
+        assert_ok(helio_renderer_render(s.vulkan, &s.frame, NULL));
+        const helio_picture found = helio_renderer_picture(s.vulkan);
+        assert_true((found.rgba == NULL) == s.frame.no_radiance && (found.object == NULL) == s.frame.no_radiance);
+        s.frame.no_radiance = false;
+        s.frame.progress = NULL;
+        assert_ok(helio_renderer_render(s.cpu, &s.frame, NULL));
+        const helio_picture expected = helio_renderer_picture(s.cpu);
+        for (size_t k = 0; k < WIDTH * HEIGHT; k++) {
+            uint8_t own[4];
+            tonemap_shown((found.rgba != NULL ? found : expected).rgba + 4 * k, &look, own);
+            for (size_t c = 0; c < 4; c++) {
+                const int distance = abs((int)found.shown[4 * k + c] - (int)own[c]);
+                assert_true(distance <= 1);
+                off += distance > 0;
+            }
+        }
+        print_message("%u of %d bytes are the next\n", off, 4 * WIDTH * HEIGHT);
+    }
+    destroy_stage(&s);
+}
+
 /* AUTO leaves even light to the BRDF, and comes back when it is even no more. */
 static void even_light_is_not_aimed_at(void **state)
 {
@@ -515,13 +560,6 @@ static void black_maps_give_black_pictures(void **state)
 }
 
 /* ---- what a caller may do ---- */
-
-static bool stop_after_two(void *user, float done)
-{
-    uint32_t *calls = user;
-    assert_true(done > 0.0f && done <= 1.0f);
-    return ++*calls < 2;
-}
 
 static void frames_stop_when_told_to(void **state)
 {
@@ -730,28 +768,41 @@ static stage make_map_stage(const helio_renderer_desc *desc)
     return s;
 }
 
+/* Every third frame is a sky. */
+static void update_stage(const stage *s, helio_sky *sky, const float *rgb, size_t index, helio_environment_info *info)
+{
+    const helio_sky_desc desc = {.sun = {.azimuth = 160, .elevation = 3.0 * (double)index}, .albedo = 0.2f};
+    if (index % 3 == 2)
+        assert_ok(helio_sky_update(sky, &desc, s->environment, info));
+    else
+        assert_ok(helio_environment_update(s->environment, rgb, info));
+}
+
 /* A device's cubes differ in the last bits, so that a sample's row or column may be another: in few pixels. */
-static void frames_of_maps_give_the_pictures_of_the_cpu(void **state)
+static void frames_of_maps_and_skies_give_the_pictures_of_the_cpu(void **state)
 {
     static float rgb[MAP_NUMBERS];
     const helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_FACE, .spp = 64, .pool_length = 64};
     stage s = make_map_stage(&desc);
     helio_frame_info cpu, vulkan;
     helio_environment_info info;
+    helio_sky *sky;
     (void)state;
+    assert_ok(helio_sky_create(s.context, SIZE, &sky));
     for (size_t i = 0; i < 6; i++) {
         fill_map(rgb, i, i);
-        assert_ok(helio_environment_update(s.environment, rgb, &info));
+        update_stage(&s, sky, rgb, i, &info);
         assert_ok(helio_renderer_render(s.cpu, &s.frame, &cpu));
-        assert_ok(helio_environment_update(s.environment, rgb, NULL));
+        update_stage(&s, sky, rgb, i, NULL);
         assert_ok(helio_renderer_render(s.vulkan, &s.frame, &vulkan));
         assert_true(s.environment->is_late); /* nobody has asked the CPU for it */
         expect_light(&vulkan, &info);
         const difference d = compare_pictures(&s, 1e-3);
-        print_message("a frame of a map: mean %.2e, worst %.2e, %u of %u pixels off\n", d.mean, d.worst, d.off,
+        print_message("a frame of a map or sky: mean %.2e, worst %.2e, %u of %u pixels off\n", d.mean, d.worst, d.off,
                       d.count);
         assert_true(d.mean <= 1e-4 && d.off <= PIXELS_BESIDE * d.count);
     }
+    helio_sky_destroy(sky);
     destroy_stage(&s);
 }
 
@@ -780,8 +831,8 @@ static void counts_belong_to_their_frames(void **state)
     destroy_stage(&s);
 }
 
-/* Nor do maps, once a shape is known. */
-static void maps_take_no_memory(void **state)
+/* Nor do maps, once a shape is known, and skies after the first. */
+static void maps_and_skies_take_no_memory(void **state)
 {
     static float rgb[MAP_NUMBERS];
     memory_count count = {0};
@@ -802,15 +853,21 @@ static void maps_take_no_memory(void **state)
                                      .no_visibility = true,
                                      .device = s.device};
     helio_renderer *renderer;
+    helio_sky *sky;
     assert_ok(helio_renderer_create(context, &own, &renderer));
+    assert_ok(helio_sky_create(context, SIZE, &sky));
     size_t taken = 0;
     s.frame.no_picture = true;
-    for (int i = 0; i < 8; i++) {
-        assert_ok(helio_environment_update(environment, rgb, NULL));
+    stage other = s;
+    other.environment = environment;
+    for (size_t i = 0; i < 9; i++) {
+        update_stage(&other, sky, rgb, i, NULL);
+        assert_true(environment->is_late);
         assert_ok(helio_renderer_render(renderer, &s.frame, NULL));
-        taken = i == 0 ? count.taken : taken;
+        taken = i < 3 ? count.taken : taken;
         assert_int_equal(count.taken, taken);
     }
+    helio_sky_destroy(sky);
     helio_renderer_destroy(renderer);
     helio_environment_destroy(environment);
     assert_int_equal(count.live, live);
@@ -832,6 +889,7 @@ int main(int count, char **arguments)
         cmocka_unit_test(settings_do_what_they_do_on_the_cpu),
         cmocka_unit_test(sequences_give_the_pictures_of_the_cpu),
         cmocka_unit_test(frames_on_their_way_do_not_mix),
+        cmocka_unit_test(what_is_shown_is_what_the_cpu_shows),
         cmocka_unit_test(even_light_is_not_aimed_at),
         cmocka_unit_test(black_maps_give_black_pictures),
         cmocka_unit_test(frames_stop_when_told_to),
@@ -840,9 +898,9 @@ int main(int count, char **arguments)
         cmocka_unit_test(renderers_come_and_go_on_a_device),
         cmocka_unit_test(frames_take_no_memory),
         cmocka_unit_test(memory_stays_flat),
-        cmocka_unit_test(frames_of_maps_give_the_pictures_of_the_cpu),
+        cmocka_unit_test(frames_of_maps_and_skies_give_the_pictures_of_the_cpu),
         cmocka_unit_test(counts_belong_to_their_frames),
-        cmocka_unit_test(maps_take_no_memory),
+        cmocka_unit_test(maps_and_skies_take_no_memory),
     };
     if (count > 1)
         cmocka_set_test_filter(arguments[1]);

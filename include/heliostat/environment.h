@@ -34,6 +34,9 @@ typedef enum helio_pixel_format {
     HELIO_PIXELS_RGBA_FLOAT,
     HELIO_PIXELS_RGB_HALF, /* IEEE binary16 */
     HELIO_PIXELS_RGBA_HALF,
+    HELIO_PIXELS_RGB9E5, /* a uint32_t for each pixel: from bit 0 on 9 bits each of red, green and blue, and 5 of an
+                            exponent: a channel is bits x 2^(exponent - 24), at most 65408. As Vulkan's
+                            E5B9G9R9_UFLOAT_PACK32 and OpenGL's RGB9_E5 */
 } helio_pixel_format;
 
 /* A map in the caller's memory, for instance a mapped buffer or a decoder's frame. */
@@ -71,7 +74,7 @@ HELIO_API helio_status helio_environment_update(helio_environment *environment, 
                                                 helio_environment_info *info);
 
 /* The same from pixels of other formats and strides, read where they lie: no copy is made but the cube. Half numbers
- * give the same bits as the floats that they stand for. */
+ * and shared exponents give the same bits as the floats that they stand for. */
 HELIO_API helio_status helio_environment_update_pixels(helio_environment *environment, const helio_pixels *pixels,
                                                        helio_environment_info *info);
 

@@ -110,19 +110,22 @@ HELIO_API void helio_tonemap_apply(helio_tonemap tonemap, float exposure, const 
 /* A picture to be written. Layers that are NULL are left out. All arrays stay the caller's. */
 typedef struct helio_picture {
     uint32_t width, height;
-    const float *rgba;     /* [height][width][4], linear, premultiplied; required */
+    const float *rgba;     /* [height][width][4], linear, premultiplied; required where there is no shown, and for all
+                              that holds radiance: EXR, PFM, HDR video */
     const float *object;   /* [height][width], coverage of the object alone, 0..1 */
     const float *albedo;   /* [height][width][3] */
     const float *normal;   /* [height][width][3], world space; 0 where nothing was hit */
     const float *position; /* [height][width][3], world space, metres; 0 where nothing was hit */
     const float *depth; /* [height][width], distance from the eye along its axis, metres; +Inf where nothing was hit */
     const float *standard_error; /* [height][width][3], of red, green and blue, see reference.h */
+    const uint8_t *shown; /* [height][width][4], what a screen shows: 8-bit sRGB, exposed and tone-mapped already, see
+                             helio_frame_desc. PNG and SDR video take it as it is, in place of rgba */
 } helio_picture;
 
 typedef struct helio_picture_write_desc {
-    float exposure;        /* stops, applied in PNG only; default 0 */
-    helio_tonemap tonemap; /* PNG only */
-    bool alpha;            /* PNG: write RGBA, with straight alpha; default: RGB */
+    float exposure;        /* stops, applied in PNG only, to rgba; default 0 */
+    helio_tonemap tonemap; /* likewise */
+    bool alpha;            /* PNG: write RGBA, with straight alpha; default: RGB. The same as for shown */
 } helio_picture_write_desc;
 
 /* Writes by the extension of path: .exr (float, ZIP; R G B A, object.A, albedo.R/G/B, normal.X/Y/Z, position.X/Y/Z,

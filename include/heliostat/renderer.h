@@ -59,7 +59,12 @@ typedef struct helio_frame_desc {
     bool no_picture; /* where a device computes, leave the picture there: helio_renderer_picture() keeps what it had.
                         The frame may then still be on its way on return, two frames are at the most, and the info is
                         that of the latest frame that is over */
-    bool retrace;    /* trace the camera rays even if the previous frame's still hold: to measure them */
+    const helio_picture_write_desc *shown; /* make helio_picture.shown, too, as a PNG would show the picture: exposed,
+                                              tone-mapped, sRGB; with alpha straight and with its alpha, else over black
+                                              and with 255. Within 1 of 255 the same on every device. Default: none */
+    bool no_radiance; /* nobody wants rgba and object, which become NULL: what a device makes of them stays there. With
+                         shown 4 bytes of a pixel come back in place of 20 */
+    bool retrace;     /* trace the camera rays even if the previous frame's still hold: to measure them */
 } helio_frame_desc;
 
 typedef struct helio_frame_info {
@@ -68,8 +73,9 @@ typedef struct helio_frame_info {
                                                          shared out in proportion to what threads spent on each.
                                                          With a device all but camera rays is by its own clock, 0
                                                          where it has none. */
-    double upload_ms, read_back_ms; /* with a device: map or cube, and points, to it, and the picture back */
-    double cube_ms;          /* with a device: map into cube, where it makes that: see helio_environment_update() */
+    double upload_ms, read_back_ms; /* with a device: map or cube, and points, to it, and the picture back, with
+                                        the making of shown */
+    double cube_ms;          /* with a device: map or sky into cube, where it makes it; see helio_environment_update */
     helio_bad_pixels bad;    /* of the map, where a device has made the cube; else 0: the update has told */
     double flux[6];          /* of the environment's faces, by the tables: see helio_environment_info */
     uint32_t passes;         /* how often the pools were redrawn */

@@ -59,7 +59,8 @@ HELIO_API void helio_sky_destroy(helio_sky *sky);
 /* Makes the cube of a new frame, as helio_environment_update() does from a map. Any elevation: below 0 it is twilight,
  * then night. A texel has the sky's radiance at its centre (of small cubes, its average) and the exact part of the
  * sun's light that it gets. The same bits on any number of threads and with every instruction set. The environment may
- * be one that was created without a map (width = height = 0). info may be NULL. */
+ * be one that was created without a map (width = height = 0). info may be NULL: then a device may make the cube, see
+ * helio_environment_update(), which is the same to 1e-5 of a texel's brightest channel. */
 HELIO_API helio_status helio_sky_update(helio_sky *sky, const helio_sky_desc *desc, helio_environment *environment,
                                         helio_environment_info *info);
 

@@ -91,7 +91,9 @@ HELIO_API bool helio_video_has_extension(const char *path);
 /* The file is made under a temporary name in the same directory, or under none. */
 HELIO_API helio_status helio_video_create(helio_context *context, const char *path, const helio_video_write_desc *desc,
                                           helio_video_writer **writer);
-HELIO_API helio_status helio_video_add(helio_video_writer *writer, const helio_picture *picture); /* rgba over black */
+/* rgba over black, or shown, which is to be made without alpha and has an exposure and a tone map of its own; 8 bits
+ * are what SDR videos hold. HDR takes rgba alone. */
+HELIO_API helio_status helio_video_add(helio_video_writer *writer, const helio_picture *picture);
 /* Finishes the file and renames it. With keep false, and where this fails or helio_video_add() failed before, as on a
  * full disk, nothing new is left: an older file of that name stays as it was. Destroys the writer in any case. */
 HELIO_API helio_status helio_video_finish(helio_video_writer *writer, bool keep);

@@ -2,6 +2,7 @@
 #include "cpu/film.h"
 
 #include "core/context.h"
+#include "image/tonemap.h"
 
 static bool create_surfaces(helio_context *context, size_t count, bool has_steps, struct film *film)
 {
@@ -20,9 +21,10 @@ helio_status film_create(helio_context *context, const film_desc *desc, struct f
     *film = (struct film){.width = desc->width, .height = desc->height, .shows_background = desc->shows_background};
     film->rgba = context_allocate(context, count, 4 * sizeof(float));
     film->object = context_allocate(context, count, sizeof(float));
+    film->shown = context_allocate(context, count, 4 * sizeof *film->shown);
     if (desc->has_steps)
         film->lights = context_allocate(context, count, sizeof *film->lights);
-    bool complete = film->rgba && film->object && (film->lights || !desc->has_steps);
+    bool complete = film->rgba && film->object && film->shown && (film->lights || !desc->has_steps);
     if (complete && desc->has_surfaces)
         complete = create_surfaces(context, count, desc->has_steps, film);
     if (complete)
@@ -41,6 +43,7 @@ void film_destroy(helio_context *context, struct film *film)
     context_release(context, film->normal);
     context_release(context, film->position);
     context_release(context, film->depth);
+    context_release(context, film->shown);
     *film = (struct film){0};
 }
 
@@ -90,6 +93,26 @@ void film_develop(const struct film *film, size_t index, const film_pixel *pixel
         film_develop_surface(film, index, &pixel->surface);
 }
 
+typedef struct showing {
+    const struct film *film;
+    const helio_picture_write_desc *desc;
+} showing;
+
+static void show_row(void *data, size_t row)
+{
+    const showing *work = data;
+    const struct film *film = work->film;
+    const size_t first = row * film->width;
+    for (size_t i = first; i < first + film->width; i++)
+        tonemap_shown(film->rgba + 4 * i, work->desc, film->shown + 4 * i);
+}
+
+void film_show(helio_context *context, const struct film *film, const helio_picture_write_desc *desc)
+{
+    showing work = {film, desc};
+    context_parallel_for(context, film->height, show_row, &work);
+}
+
 helio_picture film_picture(const struct film *film)
 {
     return (helio_picture){
@@ -101,5 +124,6 @@ helio_picture film_picture(const struct film *film)
         .normal = film->normal,
         .position = film->position,
         .depth = film->depth,
+        .shown = film->shown,
     };
 }

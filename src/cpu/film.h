@@ -36,6 +36,7 @@ struct film {
     film_surface *surfaces;                    /* likewise; NULL also where no arbitrary output variables are wanted */
     float *rgba, *object;                      /* the picture, see helio_picture ... */
     float *albedo, *normal, *position, *depth; /* ... NULL if they are not wanted */
+    uint8_t *shown;                            /* made where a frame asks for it */
 };
 
 typedef struct film_desc {
@@ -99,6 +100,10 @@ static inline void film_put_background(const struct film *film, size_t first, si
     memset(film->object + first, 0, count * sizeof *film->object);
 }
 
+/* Makes shown of rgba, as helio_frame_desc says. */
+void film_show(helio_context *context, const struct film *film, const helio_picture_write_desc *desc);
+
+/* All that is there. */
 helio_picture film_picture(const struct film *film);
 
 #endif

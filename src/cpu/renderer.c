@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "env/environment.h"
+#include "image/tonemap.h"
 #include "sampling/estimate.h"
 #include "sampling/strategy.h"
 #include "vulkan/renderer.h"
@@ -237,6 +238,8 @@ static helio_status render_on_cpu(helio_renderer *renderer, const helio_frame_de
     info->rays = frame.rays;
     info->points = frame.points;
     info->camera_rays = frame.camera_rays;
+    if (desc->shown != NULL)
+        film_show(renderer->context, &renderer->film, desc->shown);
     return HELIO_OK;
 }
 
@@ -245,10 +248,16 @@ helio_status helio_renderer_render(helio_renderer *renderer, const helio_frame_d
     helio_frame_info info = {0};
     if (renderer == NULL || desc == NULL)
         return fail(HELIO_ERR_ARGUMENT, "helio_renderer_render needs a renderer and a desc");
+    if (desc->shown != NULL)
+        HELIO_TRY(tonemap_check(desc->shown, "a frame"));
     if (renderer->vulkan != NULL)
         HELIO_TRY(vulkan_renderer_render(renderer, desc, &info));
     else
         HELIO_TRY(render_on_cpu(renderer, desc, &info));
+    if (renderer->vulkan == NULL || !desc->no_picture) {
+        renderer->has_shown = desc->shown != NULL;
+        renderer->has_no_radiance = desc->no_radiance;
+    }
     if (out != NULL)
         *out = info;
     return HELIO_OK;
@@ -256,5 +265,10 @@ helio_status helio_renderer_render(helio_renderer *renderer, const helio_frame_d
 
 helio_picture helio_renderer_picture(const helio_renderer *renderer)
 {
-    return film_picture(&renderer->film);
+    helio_picture picture = film_picture(&renderer->film);
+    if (!renderer->has_shown)
+        picture.shown = NULL;
+    if (renderer->has_no_radiance)
+        picture.rgba = picture.object = NULL;
+    return picture;
 }

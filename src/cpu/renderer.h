@@ -38,8 +38,9 @@ struct helio_renderer {
     helio_tables *tables;
     helio_pools *pools;
     struct film film;
-    struct hits hits;               /* of the current camera sample */
-    struct vulkan_renderer *vulkan; /* where a device computes; else NULL */
+    struct hits hits;                /* of the current camera sample */
+    struct vulkan_renderer *vulkan;  /* where a device computes; else NULL */
+    bool has_shown, has_no_radiance; /* what the latest frame that made a picture was asked for */
 };
 
 /* helio_renderer_create() with extras. */

@@ -10,7 +10,8 @@
 #include <heliostat/environment.h>
 
 typedef struct resampler resampler;
-typedef struct map_sink map_sink; /* see map_sink.h */
+typedef struct map_sink map_sink;   /* see map_sink.h */
+typedef struct sky_parts sky_parts; /* see sky_cube.h */
 
 /* What depends on the shape of the maps to come. */
 typedef struct environment_map {
@@ -27,9 +28,10 @@ struct helio_environment {
     float *cube;        /* [6][R][R][3]; old while it is late: call environment_settle() before it is read */
     float *solid_angle; /* [R][R], sr, the same for all faces */
     environment_map map;
-    map_sink *sink;   /* or NULL */
-    bool is_late;     /* the sink has the map of this frame, and the cube is not made yet ... */
-    map_pixels late;  /* ... of its copy */
+    map_sink *sink;            /* or NULL */
+    bool is_late;              /* the sink has the map or sky of this frame, and the cube is not made yet ... */
+    map_pixels late;           /* ... of its copy of the map ... */
+    const sky_parts *late_sky; /* ... or of this sky; else NULL */
     vec3 map_axes[3]; /* world axes X Y Z as seen in the map's space: rows of an orthogonal matrix's transpose */
     float intensity;
 };

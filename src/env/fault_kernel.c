@@ -31,7 +31,9 @@ static bool halves_may_have_faults(const uint16_t *values, int32_t count)
     return seen >> 15;
 }
 
-bool KERNEL(may_have_faults)(const void *numbers, uint32_t count, bool half)
+bool KERNEL(may_have_faults)(const void *numbers, uint32_t count, map_numbers kind)
 {
-    return half ? halves_may_have_faults(numbers, (int32_t)count) : floats_may_have_faults(numbers, (int32_t)count);
+    return kind == MAP_FLOATS   ? floats_may_have_faults(numbers, (int32_t)count)
+           : kind == MAP_HALVES ? halves_may_have_faults(numbers, (int32_t)count)
+                                : false;
 }

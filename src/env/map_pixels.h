@@ -8,11 +8,23 @@
 #include <stdint.h>
 #include <string.h>
 
+/* What a map is made of. */
+typedef enum map_numbers {
+    MAP_FLOATS,
+    MAP_HALVES, /* IEEE binary16 */
+    MAP_WORDS,  /* HELIO_PIXELS_RGB9E5: one for each pixel, and always light */
+} map_numbers;
+
+static inline uint32_t map_number_bytes(map_numbers numbers)
+{
+    return numbers == MAP_HALVES ? sizeof(uint16_t) : sizeof(uint32_t);
+}
+
 typedef struct map_pixels {
     const unsigned char *first; /* of row 0 */
     ptrdiff_t row_bytes;        /* from one row to the next */
     uint32_t pixel_bytes;
-    bool half; /* numbers are IEEE binary16, else floats */
+    map_numbers numbers;
 } map_pixels;
 
 static inline const unsigned char *map_pixels_at(const map_pixels *pixels, int64_t row, int64_t column)
@@ -35,12 +47,28 @@ static inline float half_to_float(uint16_t half)
     return half & 0x8000 ? -value : value;
 }
 
+/* Exact. */
+static inline void word_to_floats(uint32_t word, float rgb[3])
+{
+    const uint32_t unit_bits = ((word >> 27) + 127 - 24) << 23;
+    float unit;
+    memcpy(&unit, &unit_bits, sizeof unit);
+    for (int c = 0; c < 3; c++)
+        rgb[c] = (float)(word >> 9 * c & 511) * unit;
+}
+
 static inline void map_pixels_read(const map_pixels *pixels, int64_t row, int64_t column, float rgb[3])
 {
     const unsigned char *at = map_pixels_at(pixels, row, column);
     uint16_t halves[3];
-    if (!pixels->half) {
+    uint32_t word;
+    if (pixels->numbers == MAP_FLOATS) {
         memcpy(rgb, at, 3 * sizeof *rgb);
+        return;
+    }
+    if (pixels->numbers == MAP_WORDS) {
+        memcpy(&word, at, sizeof word);
+        word_to_floats(word, rgb);
         return;
     }
     memcpy(halves, at, sizeof halves);

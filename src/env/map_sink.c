@@ -26,6 +26,18 @@ bool map_sink_offer(helio_environment *environment, const map_pixels *pixels)
     if (environment->sink == NULL || !environment->sink->take(environment->sink->owner, pixels, &copy))
         return false;
     environment->late = copy;
+    environment->late_sky = NULL;
+    environment->is_late = true;
+    return true;
+}
+
+bool map_sink_offer_sky(helio_environment *environment, const sky_parts *parts)
+{
+    const sky_parts *copy =
+        environment->sink != NULL ? environment->sink->take_sky(environment->sink->owner, parts) : NULL;
+    if (copy == NULL)
+        return false;
+    environment->late_sky = copy;
     environment->is_late = true;
     return true;
 }
@@ -33,5 +45,8 @@ bool map_sink_offer(helio_environment *environment, const map_pixels *pixels)
 void environment_make_late_cube(helio_environment *environment)
 {
     environment->is_late = false;
-    resampler_run(environment->context, environment->map.resampler, &environment->late, environment->cube);
+    if (environment->late_sky != NULL)
+        sky_cube_fill(environment->late_sky, environment);
+    else
+        resampler_run(environment->context, environment->map.resampler, &environment->late, environment->cube);
 }

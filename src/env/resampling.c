@@ -53,8 +53,8 @@ static void find_origins(struct resampling *work, int index)
 /* Pixels are read four numbers at a time, which must not leave the map. */
 static const unsigned char *find_last_pixel(const resampler *plan, const map_pixels *pixels)
 {
-    uint32_t numbers = pixels->pixel_bytes / (pixels->half ? sizeof(uint16_t) : sizeof(float));
-    return numbers > 3 ? NULL : map_pixels_at(pixels, pixels->row_bytes > 0 ? plan->height - 1 : 0, plan->width - 1);
+    uint32_t numbers = pixels->pixel_bytes / map_number_bytes(pixels->numbers);
+    return numbers != 3 ? NULL : map_pixels_at(pixels, pixels->row_bytes > 0 ? plan->height - 1 : 0, plan->width - 1);
 }
 
 /* Past the caches, if they would hold little of the cube when it is read: lines that are about to be overwritten are

@@ -46,6 +46,26 @@ static inline rgbx load_halves(const unsigned char *pixel, rgbx_bits *suspicions
     return (rgbx)(((rgbx_bits)subnormal & small) | ((rgbx_bits)normal & ~small));
 }
 
+/* A shared exponent, with which all is light; exact. */
+static inline rgbx load_word(const unsigned char *pixel)
+{
+    typedef int32_t rgbx_integers __attribute__((vector_size(16)));
+    uint32_t word;
+    memcpy(&word, pixel, sizeof word);
+    const rgbx_bits bits = (rgbx_bits){word, word >> 9, word >> 18, 0} & 511;
+    const rgbx_bits exponent = (rgbx_bits){word, word, word, word} >> 27;
+    const rgbx unit = (rgbx)((exponent + (127 - 24)) << 23);
+    return __builtin_convertvector((rgbx_integers)bits, rgbx) * unit;
+}
+
+static inline __attribute__((always_inline)) rgbx load_pixel(const unsigned char *pixel, map_numbers numbers,
+                                                             rgbx_bits *suspicions)
+{
+    return numbers == MAP_FLOATS   ? load_floats(pixel, suspicions)
+           : numbers == MAP_HALVES ? load_halves(pixel, suspicions)
+                                   : load_word(pixel);
+}
+
 /* A span of a window as a view sees it. */
 typedef struct seen_span {
     const unsigned char *first; /* pixel */
@@ -55,16 +75,26 @@ typedef struct seen_span {
 
 /* Copies pixels that are probably all light. Returns false if they are not. Reads a number more than there are. to: the
  * first pixel's place in a view; others follow at the distance of pixels of all views. */
-static inline __attribute__((always_inline)) bool copy_light(const seen_span *span, bool half, float *to)
+static inline __attribute__((always_inline)) bool copy_light(const seen_span *span, map_numbers numbers, float *to)
 {
     rgbx_bits suspicions = {0};
     const unsigned char *from = span->first;
 #pragma GCC unroll 4
     for (unsigned i = 0; i < span->count; i++, from += span->step, to += GROUP_VIEWS * 4) {
-        rgbx pixel = half ? load_halves(from, &suspicions) : load_floats(from, &suspicions);
+        rgbx pixel = load_pixel(from, numbers, &suspicions);
         memcpy(to, &pixel, sizeof pixel);
     }
     return (suspicions[0] | suspicions[1] | suspicions[2]) >> 31 == 0;
+}
+
+/* numbers is a constant where this is expanded. */
+static inline bool copy_light_of(map_numbers numbers, const seen_span *span, float *to)
+{
+    switch (numbers) {
+    case MAP_FLOATS: return copy_light(span, MAP_FLOATS, to);
+    case MAP_HALVES: return copy_light(span, MAP_HALVES, to);
+    default: return copy_light(span, MAP_WORDS, to);
+    }
 }
 
 /* Copies any pixels, or parts of them, cleaned. Returns whether some were no light. */
@@ -112,8 +142,7 @@ static inline bool copy_span(const struct resampling *work, const view_group *gr
 {
     const seen_span seen = see_span(work, group, v, window, span);
     const unsigned char *end = seen.first + seen.step * (ptrdiff_t)(seen.count - 1);
-    if (seen.first != work->last_pixel && end != work->last_pixel &&
-        (work->pixels.half ? copy_light(&seen, true, to) : copy_light(&seen, false, to)))
+    if (seen.first != work->last_pixel && end != work->last_pixel && copy_light_of(work->pixels.numbers, &seen, to))
         return false;
     return copy_any(work, &group->views[v], window, span, to);
 }

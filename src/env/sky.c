@@ -5,6 +5,7 @@
 #include "core/context.h"
 #include "core/error.h"
 #include "env/environment.h"
+#include "env/map_sink.h"
 #include "env/sky_cube.h"
 #include "env/sky_row.h"
 #include "env/sky_twilight.h"
@@ -23,6 +24,7 @@ struct helio_sky {
     helio_context *context;
     uint32_t cube_size; /* the largest */
     sun_disc disc;
+    sky_sun_texel *sun; /* [sun_disc_share_limit()] */
     /* Solid angle x cosine to the zenith, sr, at the texels of the quadrature, which are the same on all side faces. */
     float top_weights[QUADRATURE_SIZE][QUADRATURE_SIZE], side_weights[QUADRATURE_SIZE / 2][QUADRATURE_SIZE];
 };
@@ -57,7 +59,8 @@ helio_status helio_sky_create(helio_context *context, uint32_t cube_size, helio_
     sky->context = context;
     sky->cube_size = cube_size;
     sky->disc.shares = context_allocate(context, sun_disc_share_limit(cube_size), sizeof *sky->disc.shares);
-    if (sky->disc.shares == NULL) {
+    sky->sun = context_allocate(context, sun_disc_share_limit(cube_size), sizeof *sky->sun);
+    if (sky->disc.shares == NULL || sky->sun == NULL) {
         helio_sky_destroy(sky);
         return HELIO_ERR_MEMORY;
     }
@@ -72,6 +75,7 @@ void helio_sky_destroy(helio_sky *sky)
         return;
     helio_context *context = sky->context;
     context_release(context, sky->disc.shares);
+    context_release(context, sky->sun);
     context_release(context, sky);
 }
 
@@ -193,16 +197,34 @@ static void find_sun(helio_sky *sky, const helio_sky_desc *desc, uint32_t size, 
 
 /* ---- the cube ---- */
 
-static void add_sun(const sun_disc *disc, const double irradiance[3], helio_environment *environment)
+/* What the texels get of the sun's light. */
+static void share_out_sun(helio_sky *sky, const double irradiance[3], const helio_environment *environment)
 {
-    size_t size = environment->size;
-    for (size_t i = 0; i < disc->share_count; i++) {
-        const sun_share *s = &disc->shares[i];
-        size_t texel = s->row * size + s->column;
-        float *rgb = environment->cube + (s->face * size * size + texel) * 3;
+    const size_t size = environment->size;
+    for (size_t i = 0; i < sky->disc.share_count; i++) {
+        const sun_share *s = &sky->disc.shares[i];
+        const size_t texel = s->row * size + s->column;
+        sky->sun[i].texel = (uint32_t)(s->face * size * size + texel);
         for (int c = 0; c < 3; c++)
-            rgb[c] += (float)(irradiance[c] * s->part[c] / (double)environment->solid_angle[texel]);
+            sky->sun[i].rgb[c] = (float)(irradiance[c] * s->part[c] / (double)environment->solid_angle[texel]);
     }
+}
+
+/* All that the frame's cube is made of; the desc was checked. */
+static sky_parts find_parts(helio_sky *sky, const helio_sky_desc *desc, const helio_environment *environment)
+{
+    sky_parts parts = {.sun = sky->sun};
+    double sky_irradiance[3], sun_irradiance[3];
+    find_skylight(sky, desc, &parts.light, sky_irradiance);
+    find_sun(sky, desc, environment->size, sun_irradiance);
+    for (int c = 0; c < 3; c++)
+        parts.ground[c] =
+            (float)((double)desc->albedo / PI * (sky_irradiance[c] + sun_irradiance[c] * sky->disc.horizontal[c]));
+    if (desc->no_disc)
+        return parts;
+    share_out_sun(sky, sun_irradiance, environment);
+    parts.sun_count = sky->disc.share_count;
+    return parts;
 }
 
 helio_status helio_sky_update(helio_sky *sky, const helio_sky_desc *given, helio_environment *environment,
@@ -217,17 +239,12 @@ helio_status helio_sky_update(helio_sky *sky, const helio_sky_desc *given, helio
     helio_sky_desc desc;
     resolve_desc(given, &desc);
     HELIO_TRY(check_desc(&desc));
-    sky_light light;
-    float ground[3];
-    double sky_irradiance[3], sun_irradiance[3];
-    find_skylight(sky, &desc, &light, sky_irradiance);
-    find_sun(sky, &desc, size, sun_irradiance);
-    for (int c = 0; c < 3; c++)
-        ground[c] =
-            (float)((double)desc.albedo / PI * (sky_irradiance[c] + sun_irradiance[c] * sky->disc.horizontal[c]));
-    sky_cube_fill(&light, ground, environment);
-    if (!desc.no_disc)
-        add_sun(&sky->disc, sun_irradiance, environment);
+    const sky_parts parts = find_parts(sky, &desc, environment);
+    if (info == NULL && map_sink_offer_sky(environment, &parts)) {
+        environment->frame++;
+        return HELIO_OK;
+    }
+    sky_cube_fill(&parts, environment);
     environment_finish_frame(environment, (helio_bad_pixels){0}, info);
     return HELIO_OK;
 }

@@ -23,7 +23,7 @@ typedef struct sky_frame {
 } sky_frame;
 
 /* The horizon must run between samples, so odd sizes need an even number of them. */
-static uint32_t find_samples(uint32_t size)
+uint32_t sky_cube_samples(uint32_t size)
 {
     return size >= LEAST_SAMPLES && size % 2 == 0 ? 1 : 2 * ((LEAST_SAMPLES / 2 + size - 1) / size);
 }
@@ -127,13 +127,21 @@ static void fill_rows(void *data, size_t index)
             fill_ground(frame, sky_side_faces[i], mirrored);
 }
 
-void sky_cube_fill(const sky_light *light, const float ground[3], helio_environment *environment)
+static void add_sun(const sky_parts *parts, helio_environment *environment)
+{
+    for (size_t i = 0; i < parts->sun_count; i++)
+        for (size_t c = 0; c < 3; c++)
+            environment->cube[(size_t)parts->sun[i].texel * 3 + c] += parts->sun[i].rgb[c];
+}
+
+void sky_cube_fill(const sky_parts *parts, helio_environment *environment)
 {
     uint32_t size = environment->size;
     sky_frame frame = {.kernels = kernels_of(context_isa(environment->context)),
                        .environment = environment,
-                       .samples = find_samples(size),
-                       .light = *light};
-    memcpy(frame.ground, ground, sizeof frame.ground);
+                       .samples = sky_cube_samples(size),
+                       .light = parts->light};
+    memcpy(frame.ground, parts->ground, sizeof frame.ground);
     context_parallel_for(environment->context, size + (size + 1) / 2, fill_rows, &frame);
+    add_sun(parts, environment);
 }

@@ -34,12 +34,12 @@ static void check_row(void *data, size_t row)
     enum { PIECE = 256 }; /* pixels that are looked at one by one if there is a fault among them */
     hygiene *work = data;
     environment_map *map = &work->environment->map;
-    const uint32_t numbers = work->pixels.pixel_bytes / (work->pixels.half ? sizeof(uint16_t) : sizeof(float));
+    const uint32_t numbers = work->pixels.pixel_bytes / map_number_bytes(work->pixels.numbers);
     helio_bad_pixels bad = {0};
     for (uint32_t first = 0; first < map->width; first += PIECE) {
         uint32_t count = map->width - first < PIECE ? map->width - first : PIECE;
         const void *piece = map_pixels_at(&work->pixels, (int64_t)row, first);
-        if (work->kernels->may_have_faults(piece, count * numbers, work->pixels.half))
+        if (work->kernels->may_have_faults(piece, count * numbers, work->pixels.numbers))
             count_faults(work, row, first, first + count, &bad);
     }
     map->row_faults[row] = bad;
@@ -70,14 +70,16 @@ void environment_finish_frame(helio_environment *environment, helio_bad_pixels b
 
 static helio_status resolve_pixels(const environment_map *map, const helio_pixels *given, map_pixels *pixels)
 {
-    if ((unsigned)given->format > HELIO_PIXELS_RGBA_HALF)
+    static const map_numbers kinds[] = {MAP_FLOATS, MAP_FLOATS, MAP_HALVES, MAP_HALVES, MAP_WORDS};
+    static const uint32_t channels[] = {3, 4, 3, 4, 1};
+    if ((unsigned)given->format > HELIO_PIXELS_RGB9E5)
         return fail(HELIO_ERR_ARGUMENT, "pixel format %d is unknown; use a value of helio_pixel_format",
                     (int)given->format);
-    bool alpha = given->format == HELIO_PIXELS_RGBA_FLOAT || given->format == HELIO_PIXELS_RGBA_HALF;
-    bool half = given->format == HELIO_PIXELS_RGB_HALF || given->format == HELIO_PIXELS_RGBA_HALF;
-    uint32_t number = half ? sizeof(uint16_t) : sizeof(float);
-    *pixels = (map_pixels){
-        .first = given->data, .row_bytes = given->row_bytes, .pixel_bytes = (alpha ? 4 : 3) * number, .half = half};
+    const uint32_t number = map_number_bytes(kinds[given->format]);
+    *pixels = (map_pixels){.first = given->data,
+                           .row_bytes = given->row_bytes,
+                           .pixel_bytes = channels[given->format] * number,
+                           .numbers = kinds[given->format]};
     ptrdiff_t least = (ptrdiff_t)map->width * pixels->pixel_bytes;
     if (pixels->row_bytes == 0)
         pixels->row_bytes = least;

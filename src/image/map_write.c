@@ -16,7 +16,7 @@ static helio_status pfm_write_map(helio_context *context, file_writer *writer, c
                                   const helio_map_write_desc *desc)
 {
     (void)desc;
-    return pfm_write_pixels(context, writer, &(picture_pixels){map->width, map->height, map->rgb, 3});
+    return pfm_write_pixels(context, writer, &(picture_pixels){map->width, map->height, map->rgb, 3, NULL});
 }
 
 #if HELIO_WITH_PNG
@@ -24,7 +24,7 @@ static helio_status png_write_map(helio_context *context, file_writer *writer, c
                                   const helio_map_write_desc *desc)
 {
     const helio_picture_write_desc tones = {.exposure = desc->exposure, .tonemap = desc->tonemap};
-    return png_write_pixels(context, writer, &(picture_pixels){map->width, map->height, map->rgb, 3}, &tones);
+    return png_write_pixels(context, writer, &(picture_pixels){map->width, map->height, map->rgb, 3, NULL}, &tones);
 }
 #endif
 

@@ -153,5 +153,6 @@ helio_status pfm_write(helio_context *context, file_writer *writer, const helio_
                        const helio_picture_write_desc *desc)
 {
     (void)desc;
-    return pfm_write_pixels(context, writer, &(picture_pixels){picture->width, picture->height, picture->rgba, 4});
+    return pfm_write_pixels(context, writer,
+                            &(picture_pixels){picture->width, picture->height, picture->rgba, 4, NULL});
 }

@@ -3,8 +3,7 @@
 
 #include "core/error.h"
 #include "image/image.h"
-
-#include <math.h>
+#include "image/tonemap.h"
 
 typedef helio_status (*picture_writer)(helio_context *context, file_writer *writer, const helio_picture *picture,
                                        const helio_picture_write_desc *desc);
@@ -12,19 +11,20 @@ typedef helio_status (*picture_writer)(helio_context *context, file_writer *writ
 typedef struct picture_format {
     const char *extension;
     picture_writer write; /* NULL: not built in */
+    bool shows;           /* holds what a screen shows, not radiance */
 } picture_format;
 
 static const picture_format FORMATS[] = {
 #if HELIO_WITH_OPENEXR
-    {"exr", exr_write},
+    {"exr", exr_write, false},
 #else
-    {"exr", NULL},
+    {"exr", NULL, false},
 #endif
-    {"pfm", pfm_write},
+    {"pfm", pfm_write, false},
 #if HELIO_WITH_PNG
-    {"png", png_write},
+    {"png", png_write, true},
 #else
-    {"png", NULL},
+    {"png", NULL, true},
 #endif
 };
 
@@ -53,20 +53,17 @@ helio_status helio_picture_check_path(const char *path)
     return format != NULL && format->write != NULL ? HELIO_OK : fail_with_format(path, format);
 }
 
-static helio_status check_picture(const char *path, const helio_picture *picture, const helio_picture_write_desc *desc)
+static helio_status check_picture(const char *path, const picture_format *format, const helio_picture *picture,
+                                  const helio_picture_write_desc *desc)
 {
-    if (picture->rgba == NULL)
+    const bool is_there = picture->rgba != NULL || (format->shows && picture->shown != NULL);
+    if (!is_there)
         return fail(HELIO_ERR_ARGUMENT, "the picture for %s has no pixels: rgba is NULL", path);
     if (picture->width == 0 || picture->height == 0 || picture->width > IMAGE_EDGE_LIMIT ||
         picture->height > IMAGE_EDGE_LIMIT)
         return fail(HELIO_ERR_ARGUMENT, "the picture for %s is %u x %u pixels; each must be 1 to %d", path,
                     picture->width, picture->height, IMAGE_EDGE_LIMIT);
-    if (!isfinite(desc->exposure))
-        return fail(HELIO_ERR_ARGUMENT, "the exposure for %s is no finite number", path);
-    if ((unsigned)desc->tonemap > HELIO_TONEMAP_REINHARD)
-        return fail(HELIO_ERR_ARGUMENT, "tone map %d for %s is unknown; use HELIO_TONEMAP_CLIP or _REINHARD",
-                    (int)desc->tonemap, path);
-    return HELIO_OK;
+    return tonemap_check(desc, path);
 }
 
 helio_status helio_picture_write(helio_context *context, const char *path, const helio_picture *picture,
@@ -78,7 +75,7 @@ helio_status helio_picture_write(helio_context *context, const char *path, const
     const picture_format *format = find_format(path);
     if (format == NULL || format->write == NULL)
         return fail_with_format(path, format);
-    HELIO_TRY(check_picture(path, picture, &desc));
+    HELIO_TRY(check_picture(path, format, picture, &desc));
 
     file_writer writer;
     HELIO_TRY(file_writer_open(&writer, path));

@@ -12,6 +12,7 @@ typedef struct picture_pixels {
     uint32_t width, height;
     const float *colours; /* [height][width][channels] */
     size_t channels;      /* 3 or 4 */
+    const uint8_t *shown; /* [height][width][4], or NULL: see helio_picture */
 } picture_pixels;
 
 /* Each writes to writer->stream and leaves commit and abandon to the caller. picture and desc have been checked. */

@@ -36,6 +36,22 @@ static void on_warning(png_structp library, png_const_charp message)
     context_log(encoder->context, HELIO_LOG_WARNING, "%s: %s", encoder->path, message);
 }
 
+/* What is shown already, or is to be shown. */
+static void fill_row(png_encoder *encoder, const picture_pixels *pixels, const helio_picture_write_desc *desc,
+                     size_t row)
+{
+    const size_t bytes = desc->alpha ? 4 : 3, first = row * pixels->width;
+    for (size_t column = 0; column < pixels->width; column++) {
+        if (pixels->shown != NULL) {
+            memcpy(encoder->row + bytes * column, pixels->shown + (first + column) * 4, bytes);
+            continue;
+        }
+        const float *colour = pixels->colours + (first + column) * pixels->channels;
+        const float rgba[4] = {colour[0], colour[1], colour[2], pixels->channels == 4 ? colour[3] : 1};
+        tonemap_pixel(rgba, desc, encoder->row + bytes * column);
+    }
+}
+
 /* All that may jump: nothing here is a variable that would have to survive the jump. */
 static helio_status encode(png_encoder *encoder, const picture_pixels *pixels, const helio_picture_write_desc *desc)
 {
@@ -50,13 +66,8 @@ static helio_status encode(png_encoder *encoder, const picture_pixels *pixels, c
     png_set_sRGB(library, encoder->info, PNG_sRGB_INTENT_RELATIVE);
     png_set_compression_level(library, 3); /* 0.6 of the time of 6, the default, for files a tenth larger */
     png_write_info(library, encoder->info);
-    size_t bytes = desc->alpha ? 4 : 3;
-    const float *colour = pixels->colours;
     for (size_t row = 0; row < pixels->height; row++) {
-        for (size_t column = 0; column < pixels->width; column++, colour += pixels->channels) {
-            const float rgba[4] = {colour[0], colour[1], colour[2], pixels->channels == 4 ? colour[3] : 1};
-            tonemap_pixel(rgba, desc, encoder->row + bytes * column);
-        }
+        fill_row(encoder, pixels, desc, row);
         png_write_row(library, encoder->row);
     }
     png_write_end(library, NULL);
@@ -80,6 +91,6 @@ helio_status png_write_pixels(helio_context *context, file_writer *writer, const
 helio_status png_write(helio_context *context, file_writer *writer, const helio_picture *picture,
                        const helio_picture_write_desc *desc)
 {
-    const picture_pixels pixels = {picture->width, picture->height, picture->rgba, 4};
+    const picture_pixels pixels = {picture->width, picture->height, picture->rgba, 4, picture->shown};
     return png_write_pixels(context, writer, &pixels, desc);
 }

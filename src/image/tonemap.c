@@ -22,6 +22,16 @@ helio_status helio_tonemap_parse(const char *name, helio_tonemap *tonemap)
     return HELIO_OK;
 }
 
+helio_status tonemap_check(const helio_picture_write_desc *desc, const char *name)
+{
+    if (!isfinite(desc->exposure))
+        return fail(HELIO_ERR_ARGUMENT, "the exposure for %s is no finite number", name);
+    if ((unsigned)desc->tonemap > HELIO_TONEMAP_REINHARD)
+        return fail(HELIO_ERR_ARGUMENT, "tone map %d for %s is unknown; use HELIO_TONEMAP_CLIP or _REINHARD",
+                    (int)desc->tonemap, name);
+    return HELIO_OK;
+}
+
 /* 0 for NaN. */
 static float clamp(float value, float greatest)
 {

@@ -45,9 +45,23 @@ void video_pixels_end(video_pixels *pixels)
     context_release(pixels->context, pixels->encoder);
 }
 
-/* R'G'B' of one pixel. */
-static void encode(const video_pixels *pixels, const float rgba[4], float signal[3])
+/* Where a pixel of the frame is in the picture. */
+static size_t index_at(const helio_picture *picture, int x, int y)
 {
+    size_t column = (size_t)x < picture->width ? (size_t)x : picture->width - 1;
+    size_t row = (size_t)y < picture->height ? (size_t)y : picture->height - 1;
+    return row * picture->width + column;
+}
+
+/* R'G'B' of one pixel. */
+static void encode(const video_pixels *pixels, const helio_picture *picture, size_t index, float signal[3])
+{
+    if (!pixels->hdr && picture->shown != NULL) {
+        for (size_t c = 0; c < 3; c++)
+            signal[c] = (float)picture->shown[4 * index + c] * (1.0f / 255);
+        return;
+    }
+    const float *rgba = picture->rgba + 4 * index;
     float light[3];
     if (pixels->hdr)
         for (int c = 0; c < 3; c++) {
@@ -58,13 +72,6 @@ static void encode(const video_pixels *pixels, const float rgba[4], float signal
         tonemap_linear(rgba, &pixels->look, light);
     for (int c = 0; c < 3; c++)
         signal[c] = transfer_encoder_look_up(pixels->encoder, light[c]);
-}
-
-static const float *pixel_at(const helio_picture *picture, int x, int y)
-{
-    size_t column = (size_t)x < picture->width ? (size_t)x : picture->width - 1;
-    size_t row = (size_t)y < picture->height ? (size_t)y : picture->height - 1;
-    return picture->rgba + 4 * (row * picture->width + column);
 }
 
 /* Stores a code of 8 or of 10 bits. */
@@ -84,7 +91,7 @@ static void make_line(const video_pixels *pixels, const helio_picture *picture, 
 {
     for (int x = 0; x < width; x++) {
         float rgb[3];
-        encode(pixels, pixel_at(picture, x, y), rgb);
+        encode(pixels, picture, index_at(picture, x, y), rgb);
         for (int c = 0; c < 3; c++) {
             const float *m = pixels->matrix[c];
             line[c][x] = m[0] * rgb[0] + m[1] * rgb[1] + m[2] * rgb[2];
@@ -125,7 +132,7 @@ static void fill_gbr(const video_pixels *pixels, const helio_picture *picture, A
     for (int y = 0; y < frame->height; y++)
         for (int x = 0; x < frame->width; x++) {
             float rgb[3];
-            encode(pixels, pixel_at(picture, x, y), rgb);
+            encode(pixels, picture, index_at(picture, x, y), rgb);
             for (int c = 0; c < 3; c++)
                 store(frame, PLANES[c], x, y, 10, 1023 * rgb[c]);
         }
@@ -136,8 +143,12 @@ static void fill_rgb(const video_pixels *pixels, const helio_picture *picture, A
 {
     for (int y = 0; y < frame->height; y++)
         for (int x = 0; x < frame->width; x++) {
-            unsigned char rgb[3];
-            tonemap_pixel(pixel_at(picture, x, y), &pixels->look, rgb);
+            const size_t index = index_at(picture, x, y);
+            uint8_t rgb[4];
+            if (picture->shown != NULL)
+                memcpy(rgb, picture->shown + 4 * index, sizeof rgb);
+            else
+                tonemap_shown(picture->rgba + 4 * index, &pixels->look, rgb);
             uint32_t word = (uint32_t)rgb[0] << 16 | (uint32_t)rgb[1] << 8 | rgb[2];
             memcpy(frame->data[0] + (ptrdiff_t)y * frame->linesize[0] + 4 * (size_t)x, &word, sizeof word);
         }

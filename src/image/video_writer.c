@@ -150,8 +150,8 @@ static helio_status encode(helio_video_writer *writer, const helio_picture *pict
 
 helio_status helio_video_add(helio_video_writer *writer, const helio_picture *picture)
 {
-    if (writer == NULL || picture == NULL || picture->rgba == NULL)
-        return fail(HELIO_ERR_ARGUMENT, "helio_video_add needs a writer and a picture with rgba");
+    if (writer == NULL || picture == NULL || (picture->rgba == NULL && (writer->desc.hdr || picture->shown == NULL)))
+        return fail(HELIO_ERR_ARGUMENT, "helio_video_add needs a writer and a picture with rgba, or but for HDR shown");
     if (picture->width != writer->desc.width || picture->height != writer->desc.height)
         return fail(HELIO_ERR_ARGUMENT, "a frame of %u x %u pixels cannot be added to %s, which has %u x %u",
                     picture->width, picture->height, writer->path, writer->desc.width, writer->desc.height);

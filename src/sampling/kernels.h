@@ -102,7 +102,7 @@ typedef struct kernel_set {
                      struct resampling_space *space);
 
     /* Is there perhaps a pixel among these numbers that is not light? Surely not if this is false. */
-    bool (*may_have_faults)(const void *numbers, uint32_t count, bool half);
+    bool (*may_have_faults)(const void *numbers, uint32_t count, map_numbers kind);
 
     /* Adds texels of a row to the sums of their columns. rgb: [count][3]. solid_angles: [count]. v: of the row's
      * centre. The same bits with every instruction set. */
@@ -143,7 +143,7 @@ uint32_t KERNEL(fill_background)(const struct background *b, uint32_t count, con
 void KERNEL(fill_sky)(const struct sky_light *light, const struct sky_row *row, float *const *rgb);
 bool KERNEL(resample)(const struct resampling *work, const struct view_group *group, const struct overlap_tile *tile,
                       struct resampling_space *space);
-bool KERNEL(may_have_faults)(const void *numbers, uint32_t count, bool half);
+bool KERNEL(may_have_faults)(const void *numbers, uint32_t count, map_numbers kind);
 void KERNEL(add_light)(const float *rgb, const float *solid_angles, float v, uint32_t count,
                        struct exposure_columns *sums);
 void KERNEL(aim)(const struct face_points *points, sample_block *block);

@@ -275,20 +275,27 @@ static void record_shading(struct vulkan_renderer *v, vulkan_commands *commands)
     commands_label_end(commands);
 }
 
-/* may_stop: of a frame that stops here, sums are wanted. */
-static void record_read_back(const struct vulkan_renderer *v, frame_slot *slot, bool wants_picture, bool may_stop)
+/* Sums that are developed here: of a shadow catcher where a frame stopped, and of layers. */
+static void record_sums(const struct vulkan_renderer *v, vulkan_commands *commands, bool has_stopped)
+{
+    if (has_stopped && v->catches)
+        commands_copy(commands, &v->caught, &v->caught_back, v->caught.bytes);
+    if (v->has_new_surfaces)
+        commands_copy(commands, &v->surfaces, &v->surfaces_back, v->surfaces.bytes);
+}
+
+/* What a step has counted, and after the last the picture. */
+static void record_read_back(const struct vulkan_renderer *v, frame_slot *slot, const helio_frame_desc *desc,
+                             bool is_last)
 {
     vulkan_commands *commands = &slot->commands;
     commands_copy(commands, &v->counts, &slot->counts_back, sizeof(struct layout_counts));
     commands_copy(commands, &v->points.counts, &slot->lists_back, 2 * sizeof(uint32_t));
-    if (!wants_picture)
+    if (!is_last)
         return;
-    commands_copy(commands, &v->picture, &v->picture_back, v->picture.bytes);
-    commands_copy(commands, &v->object, &v->object_back, v->object.bytes);
-    if (may_stop && v->catches)
-        commands_copy(commands, &v->caught, &v->caught_back, v->caught.bytes);
-    if (v->has_new_surfaces)
-        commands_copy(commands, &v->surfaces, &v->surfaces_back, v->surfaces.bytes);
+    read_back_record(&v->back, commands, desc);
+    if (!desc->no_picture)
+        record_sums(v, commands, false);
 }
 
 /* Starts with what the step needs that is not there yet: the tables of the frame, the pools of the pass, the points. */
@@ -324,7 +331,7 @@ static void record_step(struct vulkan_renderer *v, frame_slot *slot, const struc
     marks->pools = commands_mark(commands);
     record_shading(v, commands);
     marks->shaded = commands_mark(commands);
-    record_read_back(v, slot, !desc->no_picture, !frame->step.is_last);
+    record_read_back(v, slot, desc, frame->step.is_last);
     marks->back = commands_mark(commands);
 }
 
@@ -349,8 +356,8 @@ static helio_status run_step(struct vulkan_renderer *v, frame_slot *slot, const 
 /* The sums that the steps have left in a pixel. */
 static film_light sums_of_pixel(const struct vulkan_renderer *v, size_t pixel)
 {
-    const float *rgba = (const float *)v->picture_back.mapped + 4 * pixel;
-    film_light sums = {.covered = (double)rgba[3], .object = (double)((const float *)v->object_back.mapped)[pixel]};
+    const float *rgba = (const float *)v->back.picture_back.mapped + 4 * pixel;
+    film_light sums = {.covered = (double)rgba[3], .object = (double)((const float *)v->back.object_back.mapped)[pixel]};
     for (int c = 0; c < 3; c++)
         sums.rgb[c] = (double)rgba[c];
     if (v->catches) {
@@ -398,18 +405,39 @@ static void take_surfaces(void *data, size_t index)
         }
 }
 
-static void take_picture(helio_renderer *renderer, struct frame *frame, bool has_stopped)
+/* The sums of such a frame come back now, and the rest is done here. */
+static helio_status take_stopped(helio_renderer *renderer, frame_slot *slot, const helio_frame_desc *desc,
+                                 double weight)
+{
+    const struct vulkan_renderer *v = renderer->vulkan;
+    const helio_frame_desc sums = {.no_picture = desc->no_picture};
+    if (desc->no_picture)
+        return HELIO_OK;
+    HELIO_TRY(commands_begin(&slot->commands));
+    read_back_record(&v->back, &slot->commands, &sums);
+    record_sums(v, &slot->commands, true);
+    HELIO_TRY(commands_submit(&slot->commands));
+    HELIO_TRY(commands_wait(&slot->commands));
+    read_back_take(&v->back, &sums, &renderer->film);
+    develop_stopped(renderer, weight);
+    if (desc->shown != NULL)
+        film_show(renderer->context, &renderer->film, desc->shown);
+    return HELIO_OK;
+}
+
+static helio_status take_picture(helio_renderer *renderer, frame_slot *slot, struct frame *frame,
+                                 const helio_frame_desc *desc)
 {
     struct vulkan_renderer *v = renderer->vulkan;
-    const struct film *film = &renderer->film;
-    const size_t pixels = (size_t)film->width * film->height;
-    memcpy(film->rgba, v->picture_back.mapped, pixels * 4 * sizeof *film->rgba);
-    memcpy(film->object, v->object_back.mapped, pixels * sizeof *film->object);
-    if (has_stopped && !frame->step.is_last)
-        develop_stopped(renderer, frame->weight);
-    if (v->has_new_surfaces)
+    if (slot->info.stopped && !frame->step.is_last)
+        HELIO_TRY(take_stopped(renderer, slot, desc, frame->weight));
+    else
+        read_back_take(&v->back, desc, &renderer->film);
+    if (v->has_new_surfaces && !desc->no_picture) {
         context_parallel_for(renderer->context, frame->tile_count, take_surfaces, frame);
-    v->has_new_surfaces = false;
+        v->has_new_surfaces = false;
+    }
+    return HELIO_OK;
 }
 
 /* All steps but the last are waited for, so that progress can be told. */
@@ -447,8 +475,7 @@ helio_status vulkan_renderer_render(helio_renderer *renderer, const helio_frame_
     HELIO_TRY(light_send(&v->light, index));
     HELIO_TRY(run_steps(renderer, index, &frame, desc));
     v->next = 1 - index;
-    if (!desc->no_picture)
-        take_picture(renderer, &frame, v->slots[index].info.stopped);
+    HELIO_TRY(take_picture(renderer, &v->slots[index], &frame, desc));
     *info = desc->no_picture ? v->latest_info : v->slots[index].info;
     return HELIO_OK;
 }

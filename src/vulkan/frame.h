@@ -7,6 +7,7 @@
 #include "vulkan/light.h"
 #include "vulkan/points.h"
 #include "vulkan/raster.h"
+#include "vulkan/read_back.h"
 #include "vulkan/renderer.h"
 #include "vulkan/textures.h"
 
@@ -51,8 +52,8 @@ struct vulkan_renderer {
     VkPipeline primary_drawn;                    /* for triangles that the rasteriser found */
     VkPipeline shade_tiles;                      /* where points that shine weigh tiles; else nothing */
     vulkan_buffer step, counts, picture, object; /* on the device */
-    vulkan_buffer caught;                        /* for a shadow catcher; else nothing, as is: */
-    vulkan_buffer picture_back, object_back, caught_back;
+    vulkan_buffer caught, caught_back;           /* for a shadow catcher; else nothing, as is: */
+    vulkan_read_back back;
     vulkan_buffer nodes, triangles, normals; /* for rays; else nothing */
     vulkan_textures textures;                /* for camera rays; else nothing */
     vulkan_buffer surfaces, surfaces_back;   /* for layers found by the device; else nothing */

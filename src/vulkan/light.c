@@ -147,7 +147,7 @@ static void copy_piece(void *data, size_t piece)
 static void stage(vulkan_light *light, uint32_t slot)
 {
     light->slot = slot;
-    light->slots[slot].is_map = false;
+    light->slots[slot].is_map = light->slots[slot].is_sky = false;
     environment_settle(light->environment);
     context_parallel_for(light->environment->context, (light_cube_bytes(light) + COPY_PIECE - 1) / COPY_PIECE,
                          copy_piece, light);
@@ -163,14 +163,17 @@ helio_status light_send(vulkan_light *light, uint32_t slot)
 {
     light_slot *own = &light->slots[slot];
     HELIO_TRY(commands_begin(&own->upload)); /* when the one before has left the staging */
-    const bool is_map = map_is_here(&light->map);
-    if (!is_map)
+    const bool is_map = map_is_here(&light->map), is_sky = map_is_sky(&light->map);
+    if (!is_map && !is_sky)
         stage(light, slot);
     light->slot = slot;
     own->is_map = is_map;
+    own->is_sky = is_sky;
     own->started = commands_mark(&own->upload);
     if (is_map)
         map_record_send(&light->map, slot);
+    else if (is_sky)
+        vulkan_sky_record_send(&light->map.sky, slot);
     else
         commands_copy(&own->upload, &own->staging, &own->cube, light_cube_bytes(light));
     own->done = commands_mark(&own->upload);
@@ -181,6 +184,8 @@ void light_record_resampling(vulkan_light *light, vulkan_commands *commands)
 {
     if (light->slots[light->slot].is_map)
         map_record_cube(&light->map, commands, light->slot, light_push(light, 0, 0), light->state.size);
+    if (light->slots[light->slot].is_sky)
+        vulkan_sky_record_cube(&light->map.sky, commands, light->slot, light_push(light, 0, 0));
 }
 
 void light_record_report(vulkan_light *light, vulkan_commands *commands)

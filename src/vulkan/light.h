@@ -35,7 +35,7 @@ enum { LIGHT_SLOTS = 2 };
 /* What frames have of their own, so that the cube of the next can come while one is worked on. */
 typedef struct light_slot {
     vulkan_buffer staging, cube;
-    bool is_map;         /* what was sent is a map, and the cube is to be made of it */
+    bool is_map, is_sky; /* what was sent is a map or a sky, and the cube is to be made of it */
     vulkan_buffer state; /* with that cube */
     vulkan_buffer sums_back;
     vulkan_commands upload;
@@ -71,11 +71,11 @@ void light_destroy(vulkan_light *light);
 /* Bytes of the cube. */
 uint64_t light_cube_bytes(const vulkan_light *light);
 
-/* Takes the environment's maps, which will be sent instead of cubes. The light must stay where it is. */
+/* Takes the environment's maps and skies, which will be sent instead of cubes. The light must stay where it is. */
 helio_status light_take_maps(vulkan_light *light, helio_environment *environment);
 
-/* Sends the environment's map or cube to the device, for a frame of this slot. No list that reads the slot may be on
- * its way. */
+/* Sends the environment's map, sky or cube to the device, for a frame of this slot. No list that reads the slot may be
+ * on its way. */
 helio_status light_send(vulkan_light *light, uint32_t slot);
 
 /* The same, of the cube, as part of a list that makes the tables as well, without a barrier behind. */
@@ -87,7 +87,7 @@ VkSemaphore light_sent(const vulkan_light *light);
 /* How long that took, ms, once it is over. */
 double light_send_milliseconds(const vulkan_light *light, uint32_t slot);
 
-/* Records the making of the cube of the slot in hand, if a map was sent, with a barrier behind. */
+/* Records the making of the cube of the slot in hand, if a map or a sky was sent, with a barrier behind. */
 void light_record_resampling(vulkan_light *light, vulkan_commands *commands);
 
 /* Records that what is known of the map as a whole comes back; and what came, of a slot whose frame is over. */

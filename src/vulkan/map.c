@@ -24,19 +24,19 @@ _Static_assert(sizeof(overlap_patch) == sizeof(struct layout_patch) &&
 static map_shape shape_of(const helio_environment *environment, const map_pixels *pixels)
 {
     const environment_map *map = &environment->map;
-    const uint32_t number = pixels->half ? sizeof(uint16_t) : sizeof(float);
-    return (map_shape){map->width, map->height, pixels->pixel_bytes / number, pixels->half, map->layout};
+    const uint32_t channels = pixels->pixel_bytes / map_number_bytes(pixels->numbers);
+    return (map_shape){map->width, map->height, channels, pixels->numbers, map->layout};
 }
 
 static bool is_same(const map_shape *a, const map_shape *b)
 {
     return a->width == b->width && a->height == b->height && a->layout == b->layout && a->channels == b->channels &&
-           a->half == b->half;
+           a->numbers == b->numbers;
 }
 
 static uint64_t row_bytes_of(const map_shape *shape)
 {
-    return (uint64_t)shape->width * shape->channels * (shape->half ? sizeof(uint16_t) : sizeof(float));
+    return (uint64_t)shape->width * shape->channels * map_number_bytes(shape->numbers);
 }
 
 /* Whole words, as shaders read them. */
@@ -193,17 +193,17 @@ static helio_status create_slot(vulkan_map *map, map_slot *slot, uint64_t bytes)
 
 static helio_status create_passes(vulkan_map *map)
 {
-    const uint32_t half = map->shape.half;
-    const pipeline_desc count = {"faults", 3, {THREADS, half, COUNTED_PIXELS}};
-    const pipeline_desc resample = {"resample", 2, {THREADS, half}};
-    const pipeline_desc resample_large = {"resample_large", 2, {LARGE_THREADS, half}};
-    if (map->count[half] == VK_NULL_HANDLE)
-        HELIO_TRY(pipeline_create(map->device, &count, &map->count[half]));
-    if (map->resample[half] == VK_NULL_HANDLE)
-        HELIO_TRY(pipeline_create(map->device, &resample, &map->resample[half]));
-    if (map->large_count == 0 || map->resample_large[half] != VK_NULL_HANDLE)
+    const uint32_t numbers = map->shape.numbers;
+    const pipeline_desc count = {"faults", 3, {THREADS, numbers, COUNTED_PIXELS}};
+    const pipeline_desc resample = {"resample", 2, {THREADS, numbers}};
+    const pipeline_desc resample_large = {"resample_large", 2, {LARGE_THREADS, numbers}};
+    if (map->count[numbers] == VK_NULL_HANDLE)
+        HELIO_TRY(pipeline_create(map->device, &count, &map->count[numbers]));
+    if (map->resample[numbers] == VK_NULL_HANDLE)
+        HELIO_TRY(pipeline_create(map->device, &resample, &map->resample[numbers]));
+    if (map->large_count == 0 || map->resample_large[numbers] != VK_NULL_HANDLE)
         return HELIO_OK;
-    return pipeline_create(map->device, &resample_large, &map->resample_large[half]);
+    return pipeline_create(map->device, &resample_large, &map->resample_large[numbers]);
 }
 
 /* The staging is where the CPU may read the map, too. */
@@ -295,6 +295,19 @@ static bool take(void *owner, const map_pixels *pixels, map_pixels *kept)
     return true;
 }
 
+static const sky_parts *take_sky(void *owner, const sky_parts *parts)
+{
+    vulkan_map *map = owner;
+    const helio_environment *environment = map->sink.environment;
+    return vulkan_sky_take(&map->sky, environment->context, parts, environment->frame + 1);
+}
+
+bool map_is_sky(const vulkan_map *map)
+{
+    const helio_environment *environment = map->sink.environment;
+    return environment != NULL && vulkan_sky_is_here(&map->sky, environment->frame);
+}
+
 bool map_is_here(const vulkan_map *map)
 {
     const helio_environment *environment = map->sink.environment;
@@ -320,7 +333,8 @@ static helio_status create_parts(vulkan_map *map, vulkan_commands *const *upload
 helio_status map_create(helio_device *device, helio_environment *environment, vulkan_commands *const *uploads,
                         vulkan_map *map)
 {
-    *map = (vulkan_map){.device = device, .sink = {.owner = map, .take = take}};
+    *map = (vulkan_map){.device = device, .sink = {.owner = map, .take = take, .take_sky = take_sky}};
+    vulkan_sky_begin(device, environment->size, uploads, &map->sky);
     helio_status status = create_parts(map, uploads);
     if (status == HELIO_OK)
         map_sink_join(&map->sink, environment);
@@ -335,15 +349,16 @@ void map_destroy(vulkan_map *map)
         return;
     map_sink_leave(&map->sink);
     release_shape(map);
+    vulkan_sky_end(&map->sky);
     for (int i = 0; i < MAP_COPIES; i++) {
         buffer_destroy(map->device, &map->slots[i].map);
         buffer_destroy(map->device, &map->slots[i].faults_back);
     }
     buffer_destroy(map->device, &map->faults);
-    for (int half = 0; half < 2; half++) {
-        pipeline_destroy(map->device, &map->count[half]);
-        pipeline_destroy(map->device, &map->resample[half]);
-        pipeline_destroy(map->device, &map->resample_large[half]);
+    for (int numbers = 0; numbers < MAP_KINDS_OF_NUMBERS; numbers++) {
+        pipeline_destroy(map->device, &map->count[numbers]);
+        pipeline_destroy(map->device, &map->resample[numbers]);
+        pipeline_destroy(map->device, &map->resample_large[numbers]);
     }
     commands_destroy(&map->commands);
     *map = (vulkan_map){0};
@@ -368,17 +383,17 @@ void map_record_cube(vulkan_map *map, vulkan_commands *commands, uint32_t slot, 
                      uint32_t cube_size)
 {
     map_slot *own = &map->slots[slot];
-    const bool half = map->shape.half;
+    const map_numbers numbers = map->shape.numbers;
     const uint64_t pixels = (uint64_t)map->shape.width * map->shape.height, counted = THREADS * COUNTED_PIXELS;
     push_map(own, &push);
     push.parameter[0] = (uint32_t)map->large_count;
     commands_label(commands, "map into cube");
     commands_clear(commands, &map->faults);
     commands_barrier(commands);
-    commands_dispatch(commands, map->count[half], &push, (pixels + counted - 1) / counted);
-    commands_dispatch(commands, map->resample[half], &push, (uint64_t)CUBE_FACES * cube_size);
+    commands_dispatch(commands, map->count[numbers], &push, (pixels + counted - 1) / counted);
+    commands_dispatch(commands, map->resample[numbers], &push, (uint64_t)CUBE_FACES * cube_size);
     if (map->large_count > 0)
-        commands_dispatch(commands, map->resample_large[half], &push, map->large_count);
+        commands_dispatch(commands, map->resample_large[numbers], &push, map->large_count);
     commands_barrier(commands);
     commands_copy(commands, &map->faults, &own->faults_back, sizeof(struct layout_faults));
     commands_label_end(commands);

@@ -10,8 +10,9 @@
 #include "env/map_sink.h"
 #include "vulkan/commands.h"
 #include "vulkan/pipeline.h"
+#include "vulkan/sky.h"
 
-enum { MAP_COPIES = 2 };
+enum { MAP_COPIES = 2, MAP_KINDS_OF_NUMBERS = MAP_WORDS + 1 };
 
 /* A frame's map in memory of the host. */
 typedef struct map_copy {
@@ -32,7 +33,7 @@ typedef struct map_slot {
 /* What memory was taken for. */
 typedef struct map_shape {
     uint32_t width, height, channels;
-    bool half;
+    map_numbers numbers;
     helio_layout layout;
 } map_shape;
 
@@ -46,17 +47,22 @@ typedef struct vulkan_map {
     uint32_t latest; /* copy */
     map_slot slots[MAP_COPIES];
     vulkan_buffer starts, patches, weights, large, faults;
-    size_t large_count;                                  /* texels whose pixels threads share */
-    VkPipeline count[2], resample[2], resample_large[2]; /* of floats and halves: those that were needed so far */
+    size_t large_count; /* texels whose pixels threads share */
+    /* Of each kind of numbers, those that were needed so far. */
+    VkPipeline count[MAP_KINDS_OF_NUMBERS], resample[MAP_KINDS_OF_NUMBERS], resample_large[MAP_KINDS_OF_NUMBERS];
+    vulkan_sky sky; /* skies come the same way */
 } vulkan_map;
 
-/* Joins the environment: from now on its maps come here. uploads: of the slots. */
+/* Joins the environment: from now on its maps and skies come here. uploads: of the slots. */
 helio_status map_create(helio_device *device, helio_environment *environment, vulkan_commands *const *uploads,
                         vulkan_map *map);
 void map_destroy(vulkan_map *map); /* {0} is fine */
 
 /* Whether the environment's present frame is a map that has come here; else its cube must be sent. */
 bool map_is_here(const vulkan_map *map);
+
+/* The same of a sky. */
+bool map_is_sky(const vulkan_map *map);
 
 /* Records the sending of that map, in the slot's upload. */
 void map_record_send(vulkan_map *map, uint32_t slot);

@@ -170,8 +170,7 @@ static helio_status create_buffers(struct vulkan_renderer *v, const helio_render
     HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, caught, 2 * colour, "the shadow catcher", &v->caught_back));
     HELIO_TRY(buffer_create(v->device, BUFFER_ON_DEVICE, layers, 3 * colour, "the layers", &v->surfaces));
     HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, layers, 3 * colour, "the layers", &v->surfaces_back));
-    HELIO_TRY(buffer_create(v->device, BUFFER_READBACK, pixels, colour, "the picture", &v->picture_back));
-    return buffer_create(v->device, BUFFER_READBACK, pixels, number, "the object's coverage", &v->object_back);
+    return read_back_create(v->device, &v->picture, &v->object, (uint32_t)pixels, &v->back);
 }
 
 static helio_status create_parts(struct vulkan_renderer *v, const helio_renderer *renderer)
@@ -224,15 +223,15 @@ void vulkan_renderer_destroy(struct vulkan_renderer *v)
 {
     if (v == NULL)
         return;
-    vulkan_buffer *const all[] = {&v->step,        &v->counts,   &v->picture,       &v->object,  &v->picture_back,
-                                  &v->object_back, &v->nodes,    &v->triangles,     &v->normals, &v->caught,
-                                  &v->caught_back, &v->surfaces, &v->surfaces_back, NULL};
+    vulkan_buffer *const all[] = {&v->step,    &v->counts, &v->picture,     &v->object,   &v->nodes,         &v->triangles,
+                                  &v->normals, &v->caught, &v->caught_back, &v->surfaces, &v->surfaces_back, NULL};
     for (int i = 0; i < LIGHT_SLOTS; i++) {
         commands_destroy(&v->slots[i].commands);
         buffer_destroy(v->device, &v->slots[i].counts_back);
         buffer_destroy(v->device, &v->slots[i].lists_back);
     }
     buffers_destroy(v->device, all);
+    read_back_destroy(&v->back);
     pipeline_destroy(v->device, &v->shade);
     pipeline_destroy(v->device, &v->background);
     pipeline_destroy(v->device, &v->primary);
