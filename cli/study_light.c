@@ -33,6 +33,7 @@ static helio_status store(study_light *light, const helio_source_frame *frame)
         return fail_for_memory(light);
     memcpy(pixels, frame->rgb, bytes);
     kept->rgb = pixels;
+    kept->pixels = (helio_pixels){.data = pixels}; /* the source's own are overwritten by frames to come */
     light->stored++;
     light->digest = digest_add(light->digest, pixels, bytes);
     return HELIO_OK;
