@@ -474,7 +474,8 @@ static void flicker_is_between_still_and_new(void **state)
     (void)state;
     skip_without(NEEDS_RENDERER);
     write_map("map.pfm");
-#define NOISE SCENE "--spp 16 --strategies face,product+brdf --frames 5..9 --turn 0 --repeat 1 --pictures 0 --materials "
+#define NOISE                                                                                                          \
+    SCENE "--spp 16 --strategies face,product+brdf --frames 5..9 --turn 0 --repeat 1 --pictures 0 --materials "
     json_t *still = run_study(NOISE "diffuse:0.8 --reference-spp 64 --out a");
     json_t *noise = run_study(NOISE "diffuse:0.8 --reference-spp 1024 --seed-mode frame --out b");
     for (size_t i = 0; i < 2; i++) {
