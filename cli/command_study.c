@@ -69,6 +69,27 @@ static void print_means(const study_record *record, uint32_t material, int terms
     }
 }
 
+/* Of the samples that are shown, at equal samples and at equal time. */
+static void print_flicker(const study_record *record, uint32_t material)
+{
+    const study_plan *plan = record->plan;
+    for (uint32_t i = 0; i < plan->spp_count; i++) {
+        char head[48];
+        if (!plan->is_shown[i])
+            continue;
+        snprintf(head, sizeof head, "in %.3g ms", study_score_mean(record, material, 0, i, STUDY_TIME_OF_SLOWEST).ms);
+        printf("  %-*s %6u spp %12s   of relMSE\n", name_width(plan), "flicker", plan->spp[i], head);
+        for (uint32_t s = 0; s < plan->strategy_count; s++) {
+            const study_score equal = study_score_mean(record, material, s, i, STUDY_EQUAL_SAMPLES);
+            printf("  %-*s", name_width(plan), plan->strategies[s].name);
+            print_number(equal.flicker, 10);
+            print_number(study_score_mean(record, material, s, i, STUDY_TIME_OF_SLOWEST).flicker, 12);
+            print_number(100 * equal.flicker_ratio, 8);
+            printf(" %%\n");
+        }
+    }
+}
+
 static void print_summary(const study_record *record)
 {
     const study_plan *plan = record->plan;
@@ -79,6 +100,8 @@ static void print_summary(const study_record *record)
         printf("\n");
         print_means(record, material, STUDY_EQUAL_SAMPLES);
         print_means(record, material, STUDY_TIME_OF_SLOWEST);
+        if (plan->sequence > 1)
+            print_flicker(record, material);
     }
 }
 

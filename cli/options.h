@@ -69,6 +69,7 @@ typedef struct compare_options {
 typedef struct study_options {
     const char *file, *strategies, *spp, *envs, *materials, *visibility, *shown_spp, *reference_method, *out;
     uint32_t repeat, reference_spp, sequence, pictures;
+    uint32_t day_frames;      /* 0: not given */
     uint32_t picture_size[2]; /* width, height */
     double turn;              /* degrees */
     double exposure;          /* stops; NaN means auto */

@@ -40,18 +40,37 @@ chart study_chart_pair(const study_record *record, uint32_t environment, uint32_
     return made;
 }
 
-chart study_chart_mean(const study_record *record, uint32_t material, bool is_over_time)
+static chart chart_means(const study_record *record, study_error error, uint32_t material, bool is_over_time)
 {
     const study_plan *plan = record->plan;
-    chart made = begin(record, is_over_time, "relative RMSE, \u221arelMSE");
+    bool is_flicker = error == STUDY_FLICKER;
+    chart made = begin(record, is_over_time, is_flicker ? "\u221aflicker" : "relative RMSE, \u221arelMSE");
     for (uint32_t s = 0; s < made.series_count; s++) {
         chart_series *series = &made.series[s];
         series->count = plan->spp_count;
         for (uint32_t i = 0; i < plan->spp_count; i++) {
             study_score mean = study_score_mean(record, material, s, i, STUDY_EQUAL_SAMPLES);
             series->x[i] = is_over_time ? mean.ms : plan->spp[i];
-            series->y[i] = sqrt(mean.relmse);
+            series->y[i] = sqrt(is_flicker ? mean.flicker : mean.relmse);
         }
     }
     return made;
+}
+
+chart study_chart_mean(const study_record *record, uint32_t material, bool is_over_time)
+{
+    return chart_means(record, STUDY_RELMSE, material, is_over_time);
+}
+
+chart study_chart_flicker(const study_record *record, uint32_t material, bool is_over_time)
+{
+    return chart_means(record, STUDY_FLICKER, material, is_over_time);
+}
+
+bool study_chart_has_flicker(const study_plan *plan)
+{
+    uint32_t shown = 0;
+    for (uint32_t i = 0; i < plan->spp_count; i++)
+        shown += plan->is_shown[i];
+    return plan->sequence > 1 && shown > 1;
 }

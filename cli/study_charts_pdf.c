@@ -35,14 +35,16 @@ static int write_charts(const study_plan *plan, const char *name, const two_char
     return figure_write("out", path, &drawn);
 }
 
-static int write_mean(const study_record *record, uint32_t material)
+typedef chart chart_of_means(const study_record *record, uint32_t material, bool is_over_time);
+
+static int write_mean(const study_record *record, uint32_t material, const char *word, chart_of_means *make)
 {
     char name[64];
-    two_charts both = {.charts = {study_chart_mean(record, material, false), study_chart_mean(record, material, true)}};
+    two_charts both = {.charts = {make(record, material, false), make(record, material, true)}};
     snprintf(both.heading, sizeof both.heading, "%.400s, means over %u environment%s",
              record->plan->materials[material].name, record->plan->environment_count,
              record->plan->environment_count == 1 ? "" : "s");
-    snprintf(name, sizeof name, "curves/means-%u.pdf", material + 1);
+    snprintf(name, sizeof name, "curves/%s-%u.pdf", word, material + 1);
     return write_charts(record->plan, name, &both);
 }
 
@@ -63,7 +65,9 @@ int study_charts_write(const study_record *record)
     const study_plan *plan = record->plan;
     int code = study_job_folder(plan, "curves");
     for (uint32_t i = 0; code == EXIT_CODE_OK && i < plan->material_count; i++)
-        code = write_mean(record, i);
+        code = write_mean(record, i, "means", study_chart_mean);
+    for (uint32_t i = 0; code == EXIT_CODE_OK && study_chart_has_flicker(plan) && i < plan->material_count; i++)
+        code = write_mean(record, i, "flicker", study_chart_flicker);
     for (size_t i = 0; code == EXIT_CODE_OK && i < study_plan_count(plan); i++) {
         study_point point = study_plan_point(plan, i);
         if (point.strategy == 0 && point.spp == 0)

@@ -204,7 +204,7 @@ static bool is_finished(const study_job *job, const study_point *point)
     const study_cell *cell = &job->record.cells[study_plan_index(job->plan, point)];
     if (!cell->is_done || !job->plan->is_shown[point->spp])
         return cell->is_done;
-    return (job->plan->options->study.sequence < 2 || !isnan(cell->flicker)) && has_pictures(job, point);
+    return (job->plan->sequence < 2 || !isnan(cell->flicker)) && has_pictures(job, point);
 }
 
 static bool has_work(const study_job *job, const study_point *pair)
@@ -221,7 +221,7 @@ static int open_light(study_job *job, uint32_t index)
 {
     const study_environment *environment = &job->plan->environments[index];
     helio_status status = study_light_open(job->context, environment->specification, &job->plan->source,
-                                           job->plan->options->study.sequence, &job->light);
+                                           job->plan->sequence, &job->light);
     if (status != HELIO_OK && job->light.is_out_of_memory)
         return message_failure("no memory for the frames of %s", environment->specification);
     if (status != HELIO_OK)
@@ -395,7 +395,7 @@ static double count_work(const study_job *job)
     for (size_t i = 0; i < study_plan_count(plan); i++) {
         study_point point = study_plan_point(plan, i);
         if (point.strategy == 0 && point.spp == 0 && has_work(job, &point))
-            work += plan->options->study.sequence * study_truth_work(&truth);
+            work += plan->sequence * study_truth_work(&truth);
         if (!is_finished(job, &point))
             work += study_measure_work(plan, &point);
     }

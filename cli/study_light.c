@@ -33,6 +33,7 @@ static helio_status store(study_light *light, const helio_source_frame *frame)
         return fail_for_memory(light);
     memcpy(pixels, frame->rgb, bytes);
     kept->rgb = pixels;
+    kept->pixels = (helio_pixels){.data = pixels}; /* the source's own are overwritten by frames to come */
     light->stored++;
     light->digest = digest_add(light->digest, pixels, bytes);
     return HELIO_OK;
@@ -54,6 +55,17 @@ static helio_status read_frames(study_light *light, uint32_t frames)
     return HELIO_OK;
 }
 
+/* Of what stands still --frames means how often it is turned. */
+static helio_source_desc describe(const char *specification, const helio_source_desc *desc)
+{
+    helio_source_desc own = *desc;
+    helio_source_kind kind = HELIO_SOURCE_FILE;
+    bool is_known = helio_source_check(specification, &kind) == HELIO_OK;
+    if (is_known && (kind == HELIO_SOURCE_FILE || kind == HELIO_SOURCE_CONSTANT || kind == HELIO_SOURCE_SKY))
+        own.has_frames = false;
+    return own;
+}
+
 helio_status study_light_open(helio_context *context, const char *specification, const helio_source_desc *desc,
                               uint32_t frames, study_light *light)
 {
@@ -62,7 +74,8 @@ helio_status study_light_open(helio_context *context, const char *specification,
     light->skies = calloc(frames, sizeof *light->skies);
     if (light->frames == NULL || light->skies == NULL)
         return fail_for_memory(light);
-    helio_status status = helio_source_open(context, specification, desc, &light->source);
+    const helio_source_desc own = describe(specification, desc);
+    helio_status status = helio_source_open(context, specification, &own, &light->source);
     if (status != HELIO_OK)
         return status;
     light->turns = !helio_source_get_info(light->source).is_dynamic;

@@ -64,6 +64,11 @@ static void write_introduction(FILE *stream, const study_record *record)
             "time all strategies have the whole frame's time that `%s` takes; in brackets the samples that fit into "
             "it.\n",
             plan->strategies[study_terms_of_paper(plan)].name);
+    if (plan->sequence > 1)
+        fprintf(stream,
+                "\nFlicker is the mean square change of the error over up to %u frames, relative like relMSE, and as a "
+                "part of the relMSE of these frames: 1 where errors are new in each frame, 0 where they stand still.\n",
+                plan->sequence);
 }
 
 /* ---- errors -------------------------------------------------------------------------------- */
@@ -123,22 +128,23 @@ static void write_error_table(FILE *stream, const study_record *record, uint32_t
 
 /* ---- ratios -------------------------------------------------------------------------------- */
 
-static void write_ratio_head(FILE *stream, const study_plan *plan, uint32_t material, uint32_t spp)
+/* Returns how many columns that makes. */
+static uint32_t write_ratio_names(FILE *stream, const study_plan *plan, study_error error)
 {
-    uint32_t columns = 1;
+    uint32_t columns = 0;
     char name[STUDY_BASELINE_NAME];
-    fprintf(stream, "\n| `%s`, %u spp |", plan->materials[material].name, plan->spp[spp]);
     for (int i = 0; i < STUDY_BASELINES; i++)
         if (study_baseline_name(plan, i, name)) {
-            fprintf(stream, " relMSE / that of %s | at equal time |", name);
+            fprintf(stream, " %s / that of %s | at equal time |", study_error_name(error), name);
             columns += 2;
         }
-    write_rule(stream, columns);
+    return columns;
 }
 
-static void write_ratio(FILE *stream, const study_record *record, int baseline, const study_point *point, int terms)
+static void write_ratio(FILE *stream, const study_record *record, study_error error, int baseline,
+                        const study_point *point, int terms)
 {
-    const study_ratio ratio = study_ratio_mean(record, baseline, point, terms);
+    const study_ratio ratio = study_ratio_mean(record, error, baseline, point, terms);
     fputc(' ', stream);
     write_number(stream, ratio.mean);
     if (record->plan->environment_count > 1 && isfinite(ratio.mean)) {
@@ -149,20 +155,26 @@ static void write_ratio(FILE *stream, const study_record *record, int baseline, 
     fputs(" |", stream);
 }
 
+static void write_ratios(FILE *stream, const study_record *record, study_error error, const study_point *point)
+{
+    char name[STUDY_BASELINE_NAME];
+    for (int i = 0; i < STUDY_BASELINES; i++)
+        if (study_baseline_name(record->plan, i, name)) {
+            write_ratio(stream, record, error, i, point, STUDY_EQUAL_SAMPLES);
+            write_ratio(stream, record, error, i, point, study_terms_of_paper(record->plan));
+        }
+    fputc('\n', stream);
+}
+
 static void write_ratio_table(FILE *stream, const study_record *record, uint32_t material, uint32_t spp)
 {
     const study_plan *plan = record->plan;
     study_point point = {.material = material, .spp = spp};
-    char name[STUDY_BASELINE_NAME];
-    write_ratio_head(stream, plan, material, spp);
+    fprintf(stream, "\n| `%s`, %u spp |", plan->materials[material].name, plan->spp[spp]);
+    write_rule(stream, 1 + write_ratio_names(stream, plan, STUDY_RELMSE));
     for (point.strategy = 0; point.strategy < plan->strategy_count; point.strategy++) {
         write_strategy(stream, plan, point.strategy);
-        for (int i = 0; i < STUDY_BASELINES; i++)
-            if (study_baseline_name(plan, i, name)) {
-                write_ratio(stream, record, i, &point, STUDY_EQUAL_SAMPLES);
-                write_ratio(stream, record, i, &point, study_terms_of_paper(plan));
-            }
-        fputc('\n', stream);
+        write_ratios(stream, record, STUDY_RELMSE, &point);
     }
 }
 
@@ -173,6 +185,39 @@ static bool has_baseline(const study_plan *plan)
         if (study_baseline_name(plan, i, name))
             return true;
     return false;
+}
+
+/* ---- flicker ------------------------------------------------------------------------------- */
+
+static void write_flicker(FILE *stream, const study_record *record, const study_point *point)
+{
+    const study_plan *plan = record->plan;
+    const study_score equal =
+        study_score_mean(record, point->material, point->strategy, point->spp, STUDY_EQUAL_SAMPLES);
+    const study_score timed =
+        study_score_mean(record, point->material, point->strategy, point->spp, study_terms_of_paper(plan));
+    write_strategy(stream, plan, point->strategy);
+    fputc(' ', stream);
+    write_number(stream, equal.flicker);
+    fputs(" | ", stream);
+    write_number(stream, equal.flicker_ratio);
+    fputs(" | ", stream);
+    write_number(stream, timed.flicker);
+    fputs(" |", stream);
+    write_ratios(stream, record, STUDY_FLICKER, point);
+}
+
+static void write_flicker_table(FILE *stream, const study_record *record, uint32_t material, uint32_t spp)
+{
+    const study_plan *plan = record->plan;
+    study_point point = {.material = material, .spp = spp};
+    int terms = study_terms_of_paper(plan);
+    fprintf(stream, "\n| `%s`, %u spp | flicker | / relMSE | in ", plan->materials[material].name, plan->spp[spp]);
+    write_number(stream, study_score_mean(record, material, (uint32_t)terms, spp, terms).ms);
+    fputs(" ms |", stream);
+    write_rule(stream, 4 + write_ratio_names(stream, plan, STUDY_FLICKER));
+    for (point.strategy = 0; point.strategy < plan->strategy_count; point.strategy++)
+        write_flicker(stream, record, &point);
 }
 
 int study_markdown_write(const study_record *record, const char *path)
@@ -187,6 +232,8 @@ int study_markdown_write(const study_record *record, const char *path)
         write_error_table(stream, record, material);
         for (uint32_t i = next_shown(plan, 0); i < plan->spp_count && has_baseline(plan); i = next_shown(plan, i + 1))
             write_ratio_table(stream, record, material, i);
+        for (uint32_t i = next_shown(plan, 0); i < plan->spp_count && plan->sequence > 1; i = next_shown(plan, i + 1))
+            write_flicker_table(stream, record, material, i);
     }
     return output_file_finish(stream, temporary, path);
 }

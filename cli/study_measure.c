@@ -45,7 +45,7 @@ static uint32_t sequence_length(const study_job *job, const study_point *point)
 double study_measure_work(const study_plan *plan, const study_point *point)
 {
     const study_options *study = &plan->options->study;
-    uint32_t frames = study->repeat + (plan->is_shown[point->spp] && study->sequence > 1 ? study->sequence : 0);
+    uint32_t frames = study->repeat + (plan->is_shown[point->spp] && plan->sequence > 1 ? plan->sequence : 0);
     return frames * study_progress_frame(plan->strategies[point->strategy].strategy, plan->spp[point->spp]);
 }
 
@@ -197,7 +197,7 @@ static helio_status measure_flicker(study_job *job, const study_point *point, he
     measured_frame frame;
     helio_comparison_info info;
     uint32_t count = sequence_length(job, point);
-    double flicker = 0, squares = 0;
+    double flicker = 0, squares = 0, relmse = 0;
     helio_comparison_restart(job->plain);
     for (uint32_t i = 0; i < count; i++) {
         begin_frame(job, point);
@@ -209,12 +209,15 @@ static helio_status measure_flicker(study_job *job, const study_point *point, he
         status = helio_comparison_measure(job->plain, &pair, &info);
         if (status != HELIO_OK)
             return status;
+        relmse += info.relmse;
         flicker += i > 0 ? info.flicker : 0;
         squares += i > 0 ? info.flicker_rmse * info.flicker_rmse : 0;
         study_progress_end(&job->progress);
     }
     cell->flicker = count > 1 ? flicker / (count - 1) : (double)NAN;
     cell->flicker_rmse = count > 1 ? sqrt(squares / (count - 1)) : (double)NAN;
+    cell->sequence_relmse = count > 1 ? relmse / count : (double)NAN;
+    cell->flicker_ratio = cell->flicker / cell->sequence_relmse;
     return HELIO_OK;
 }
 

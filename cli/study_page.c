@@ -210,6 +210,61 @@ static void write_mean_table(FILE *stream, const study_record *record, uint32_t 
     fputs("</table></div>\n", stream);
 }
 
+static void write_flicker_head(FILE *stream, const study_record *record, uint32_t material)
+{
+    const study_plan *plan = record->plan;
+    fprintf(
+        stream,
+        "<div class=\"scroll\"><table><caption>Flicker: the mean square change of the error from frame to frame, of "
+        "%u, relative like relMSE; and as a part of the relMSE of these frames: 1 where errors are new in each "
+        "frame, 0 where they stand still</caption>\n<tr><th>strategy</th>",
+        plan->sequence);
+    for (uint32_t i = 0; i < plan->spp_count; i++) {
+        if (!plan->is_shown[i])
+            continue;
+        fprintf(stream, "<th>%u spp</th><th>of relMSE</th><th>", plan->spp[i]);
+        write_number(stream, study_score_mean(record, material, 0, i, STUDY_TIME_OF_SLOWEST).ms);
+        fputs(" ms</th>", stream);
+    }
+    fputs("</tr>\n", stream);
+}
+
+static void write_flicker_table(FILE *stream, const study_record *record, uint32_t material)
+{
+    const study_plan *plan = record->plan;
+    write_flicker_head(stream, record, material);
+    for (uint32_t s = 0; s < plan->strategy_count; s++) {
+        fputs("<tr>", stream);
+        write_strategy(stream, plan, s);
+        for (uint32_t i = 0; i < plan->spp_count; i++) {
+            const study_score equal = study_score_mean(record, material, s, i, STUDY_EQUAL_SAMPLES);
+            if (!plan->is_shown[i])
+                continue;
+            fputs("<td>", stream);
+            write_number(stream, equal.flicker);
+            fputs("</td><td>", stream);
+            write_number(stream, equal.flicker_ratio);
+            fputs("</td><td>", stream);
+            write_number(stream, study_score_mean(record, material, s, i, STUDY_TIME_OF_SLOWEST).flicker);
+            fputs("</td>", stream);
+        }
+        fputs("</tr>\n", stream);
+    }
+    fputs("</table></div>\n", stream);
+}
+
+static void write_flicker(FILE *stream, const study_record *record, uint32_t material)
+{
+    if (record->plan->sequence < 2)
+        return;
+    write_flicker_table(stream, record, material);
+    if (!study_chart_has_flicker(record->plan))
+        return;
+    const chart over_spp = study_chart_flicker(record, material, false);
+    const chart over_time = study_chart_flicker(record, material, true);
+    write_charts(stream, &over_spp, &over_time);
+}
+
 static void write_means(FILE *stream, const study_record *record)
 {
     const study_plan *plan = record->plan;
@@ -224,6 +279,7 @@ static void write_means(FILE *stream, const study_record *record)
         write_mean_table(stream, record, material, STUDY_EQUAL_SAMPLES);
         write_mean_table(stream, record, material, STUDY_TIME_OF_SLOWEST);
         write_charts(stream, &over_spp, &over_time);
+        write_flicker(stream, record, material);
     }
 }
 
@@ -248,6 +304,7 @@ static const column columns[] = {
     {"rays", "primary_ms", 1},
     {"shading", "shade_ms", 1},
     {"flicker", "flicker", 1},
+    {"of relMSE, %", "flicker_ratio", 100},
 };
 enum { COLUMNS = sizeof columns / sizeof columns[0] };
 

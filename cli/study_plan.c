@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 static const char SHIPPED_MAP[] = "sunrise.hdr";
+enum { USUAL_DAY = 240, MOST_FRAMES = 1000 };
 
 static bool is(const char *value, const char *word)
 {
@@ -237,6 +238,25 @@ static int choose_mesh(study_plan *plan)
     return mesh_path_choose(plan->options->mesh, plan->mesh);
 }
 
+/* Frames to take, and of how many a day of sky has. */
+static int choose_frames(study_plan *plan)
+{
+    const study_options *study = &plan->options->study;
+    const frame_range *frames = &plan->options->frames;
+    int code = input_source_describe(plan->options, &plan->source);
+    plan->sequence = study->sequence;
+    plan->source.frames = study->day_frames > 0 ? study->day_frames : frames->is_given ? USUAL_DAY : study->sequence;
+    if (code != EXIT_CODE_OK || !frames->is_given)
+        return code;
+    if (study->sequence != 1)
+        return message_usage("--sequence and --frames exclude each other; give one of them");
+    if (frames->last - frames->first >= MOST_FRAMES)
+        return message_usage("--frames %u..%u are too many for a study; give at most %d", frames->first, frames->last,
+                             MOST_FRAMES);
+    plan->sequence = frames->last - frames->first + 1;
+    return code;
+}
+
 int study_plan_make(study_plan *plan, const cli_options *options)
 {
     static int (*const steps[])(study_plan *) = {parse_words, take_lists, choose_shown, choose_mesh};
@@ -246,10 +266,7 @@ int study_plan_make(study_plan *plan, const cli_options *options)
         code = steps[i](plan);
     if (code == EXIT_CODE_OK)
         code = check_words(plan);
-    if (code == EXIT_CODE_OK)
-        code = input_source_describe(options, &plan->source);
-    plan->source.frames = options->study.sequence;
-    return code;
+    return code == EXIT_CODE_OK ? choose_frames(plan) : code;
 }
 
 void study_plan_release(study_plan *plan)

@@ -37,6 +37,7 @@ typedef struct study_plan {
     uint32_t material_count;
     study_environment *environments;
     uint32_t environment_count;
+    uint32_t sequence; /* frames whose flicker is measured; 1: none is */
 } study_plan;
 
 /* One point of the study. */

@@ -25,6 +25,8 @@ const study_number study_numbers[STUDY_NUMBERS] = {
     NUMBER(flip, "mean LDR-FLIP, 0 to 1"),
     NUMBER(flicker, "relative mean square change of the error from frame to frame"),
     NUMBER(flicker_rmse, "root mean square change of the error from frame to frame"),
+    NUMBER(sequence_relmse, "relative mean square error of the frames whose flicker that is"),
+    NUMBER(flicker_ratio, "flicker / sequence_relmse: 1 where errors are new in each frame, 0 where they stand still"),
     NUMBER(total_ms, "whole frame, from the map in memory to the picture: median"),
     NUMBER(low_ms, "its lower quartile"),
     NUMBER(high_ms, "its upper quartile"),

@@ -12,7 +12,8 @@ typedef struct study_cell {
     bool is_done;
     double relmse, rmse;                                       /* means over the repetitions; rmse of squares */
     double lab_mean, de2000_mean, psnr, flip;                  /* of the first one */
-    double flicker, flicker_rmse;                              /* means over the sequence */
+    double flicker, flicker_rmse, sequence_relmse;             /* means over the sequence */
+    double flicker_ratio;                                      /* flicker / sequence_relmse */
     double total_ms, low_ms, high_ms;                          /* of the whole frame: median and quartiles */
     double cube_ms, tables_ms, pools_ms, primary_ms, shade_ms; /* medians of its parts */
     double samples, useful_share, rays, passes;
@@ -26,7 +27,7 @@ typedef struct study_number {
     size_t offset; /* in study_cell */
 } study_number;
 
-enum { STUDY_NUMBERS = 21 };
+enum { STUDY_NUMBERS = 23 };
 extern const study_number study_numbers[STUDY_NUMBERS];
 double study_number_of(const study_cell *cell, const study_number *number);
 

@@ -43,6 +43,11 @@ static json_t *text_or_null(const char *text)
     return text != NULL ? json_string(text) : json_null();
 }
 
+static json_t *range_or_null(const frame_range *range)
+{
+    return range->is_given ? json_pack("[II]", (json_int_t)range->first, (json_int_t)range->last) : json_null();
+}
+
 static json_t *value_of(const cli_option *option, const cli_options *options)
 {
     const void *member = (const char *)options + option->offset;
@@ -55,7 +60,7 @@ static json_t *value_of(const cli_option *option, const cli_options *options)
     case OPTION_EXPOSURE:
         return isnan(*(const double *)member) ? json_string("auto") : json_number(*(const double *)member);
     case OPTION_SIZE: return json_pack("[ii]", (int)((const uint32_t *)member)[0], (int)((const uint32_t *)member)[1]);
-    case OPTION_RANGE: break;
+    case OPTION_RANGE: return range_or_null(member);
     }
     return json_null();
 }

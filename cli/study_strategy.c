@@ -60,7 +60,6 @@ int study_strategy_parse(const char *text, const cli_options *options, study_str
     if (helio_strategy_parse(word, &strategy->strategy) != HELIO_OK ||
         helio_weighting_parse(options->weighting, &strategy->weighting) != HELIO_OK)
         return message_usage("--strategies: %s", helio_last_error());
-    strategy->strategy = helio_strategy_resolve(strategy->strategy);
     snprintf(strategy->name, sizeof strategy->name, "%s%.64s", helio_strategy_name(strategy->strategy), text + length);
     while ((word = strtok_r(NULL, SEPARATOR, &rest)) != NULL) {
         int code = take_option(word, strategy);
@@ -83,7 +82,7 @@ static uint32_t base_colour(helio_strategy strategy)
     case HELIO_STRATEGY_PRODUCT_BRDF: return 0xe69f00;
     case HELIO_STRATEGY_BRDF: return 0x7f3b08;
     case HELIO_STRATEGY_COSINE: return 0x56b4e9;
-    default: return 0x777777;
+    default: return 0x777777; /* auto */
     }
 }
 

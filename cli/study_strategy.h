@@ -8,7 +8,7 @@
 #include <heliostat/heliostat.h>
 
 typedef struct study_strategy {
-    char name[96]; /* as it was given; auto by what it stands for */
+    char name[96]; /* as it was given */
     helio_strategy strategy;
     helio_weighting weighting;
     bool no_beta, no_control, no_decorrelation;

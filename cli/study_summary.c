@@ -26,6 +26,7 @@ study_curve study_curve_make(const study_record *record, uint32_t environment, u
         curve.rmse[k] = cell->rmse;
         curve.relmse[k] = cell->relmse;
         curve.lab[k] = cell->lab_mean;
+        curve.flicker[k] = cell->flicker;
         curve.reference_rmse = cell->reference_rmse;
     }
     return curve;
@@ -139,6 +140,19 @@ static double find_budget(const study_record *record, const study_point *point, 
     return slowest;
 }
 
+/* As relMSE falls, so does flicker; from the points that have it. */
+static double find_flicker(const study_curve *curve, double spp)
+{
+    study_curve known = {.count = 0};
+    for (uint32_t i = 0; i < curve->count; i++) {
+        if (isnan(curve->flicker[i]))
+            continue;
+        known.spp[known.count] = curve->spp[i];
+        known.flicker[known.count++] = curve->flicker[i];
+    }
+    return study_curve_at(&known, known.flicker, -1, spp);
+}
+
 static study_score score_at_time(const study_record *record, const study_point *point, int terms)
 {
     study_pace pace = {0};
@@ -149,18 +163,26 @@ static study_score score_at_time(const study_record *record, const study_point *
                          .lab = study_curve_at(&curve, curve.lab, -0.5, samples),
                          .ms = find_rest(record, point->environment, point->material) + budget,
                          .spp = samples,
-                         .useful = (double)NAN};
+                         .flicker = find_flicker(&curve, samples),
+                         .useful = (double)NAN,
+                         .flicker_ratio = (double)NAN};
 }
 
 study_score study_score_of(const study_record *record, const study_point *point, int terms)
 {
+    static const double none = (double)NAN;
     const study_cell *cell = &record->cells[study_plan_index(record->plan, point)];
     if (terms != STUDY_EQUAL_SAMPLES)
         return score_at_time(record, point, terms);
     if (!cell->is_done)
-        return (study_score){(double)NAN, (double)NAN, (double)NAN, (double)NAN, (double)NAN};
-    return (study_score){cell->relmse, cell->lab_mean, cell->total_ms, record->plan->spp[point->spp],
-                         cell->useful_share};
+        return (study_score){none, none, none, none, none, none, none};
+    return (study_score){.relmse = cell->relmse,
+                         .lab = cell->lab_mean,
+                         .ms = cell->total_ms,
+                         .spp = record->plan->spp[point->spp],
+                         .flicker = cell->flicker,
+                         .useful = cell->useful_share,
+                         .flicker_ratio = cell->flicker_ratio};
 }
 
 study_score study_score_mean(const study_record *record, uint32_t material, uint32_t strategy, uint32_t spp, int terms)
@@ -174,10 +196,17 @@ study_score study_score_mean(const study_record *record, uint32_t material, uint
         sums.lab += score.lab;
         sums.ms += log(score.ms);
         sums.spp += log(score.spp);
+        sums.flicker += log(score.flicker);
         sums.useful += score.useful;
+        sums.flicker_ratio += score.flicker_ratio;
     }
-    return (study_score){exp(sums.relmse / count), sums.lab / count, exp(sums.ms / count), exp(sums.spp / count),
-                         sums.useful / count};
+    return (study_score){.relmse = exp(sums.relmse / count),
+                         .lab = sums.lab / count,
+                         .ms = exp(sums.ms / count),
+                         .spp = exp(sums.spp / count),
+                         .flicker = exp(sums.flicker / count),
+                         .useful = sums.useful / count,
+                         .flicker_ratio = sums.flicker_ratio / count};
 }
 
 int study_terms_of_paper(const study_plan *plan)
@@ -209,25 +238,37 @@ bool study_baseline_name(const study_plan *plan, int baseline, char name[STUDY_B
     return name[0] != 0;
 }
 
+const char *study_error_name(study_error error)
+{
+    return error == STUDY_FLICKER ? "flicker" : "relMSE";
+}
+
+static double error_of(const study_record *record, study_error error, const study_point *point, int terms)
+{
+    const study_score score = study_score_of(record, point, terms);
+    return error == STUDY_FLICKER ? score.flicker : score.relmse;
+}
+
 /* The least error of those that are compared to. */
-static double baseline_relmse(const study_record *record, int baseline, const study_point *point, int terms)
+static double baseline_error(const study_record *record, study_error error, int baseline, const study_point *point,
+                             int terms)
 {
     double least = (double)NAN;
     study_point rival = *point;
     for (uint32_t i = 0; i < baselines[baseline].count; i++)
         if (study_plan_find(record->plan, helio_strategy_name(baselines[baseline].strategies[i]), &rival.strategy))
-            least = fmin(least, study_score_of(record, &rival, terms).relmse); /* passes over NaN */
+            least = fmin(least, error_of(record, error, &rival, terms)); /* passes over NaN */
     return least;
 }
 
-study_ratio study_ratio_mean(const study_record *record, int baseline, const study_point *point, int terms)
+study_ratio study_ratio_mean(const study_record *record, study_error error, int baseline, const study_point *point,
+                             int terms)
 {
     study_ratio ratio = {.worst = (double)NAN};
     study_point each = *point;
     uint32_t count = record->plan->environment_count;
     for (each.environment = 0; each.environment < count; each.environment++) {
-        double relmse = study_score_of(record, &each, terms).relmse;
-        double part = relmse / baseline_relmse(record, baseline, &each, terms);
+        double part = error_of(record, error, &each, terms) / baseline_error(record, error, baseline, &each, terms);
         ratio.mean += log(part) / count;
         if (isfinite(part) && !(part <= ratio.worst)) {
             ratio.worst = part;
@@ -283,20 +324,25 @@ static json_t *mean_object(const study_record *record, const study_point *point)
     json_object_set_new(object, "lab_mean", json_number(equal_spp.lab));
     json_object_set_new(object, "total_ms", json_number(equal_spp.ms));
     json_object_set_new(object, "useful_share", json_number(equal_spp.useful));
+    json_object_set_new(object, "flicker", json_number(equal_spp.flicker));
+    json_object_set_new(object, "flicker_ratio", json_number(equal_spp.flicker_ratio));
     json_object_set_new(object, "equal_time_ms", json_number(equal_time.ms));
     json_object_set_new(object, "equal_time_spp", json_number(equal_time.spp));
     json_object_set_new(object, "equal_time_relmse", json_number(equal_time.relmse));
     json_object_set_new(object, "equal_time_lab_mean", json_number(equal_time.lab));
+    json_object_set_new(object, "equal_time_flicker", json_number(equal_time.flicker));
     return object;
 }
 
-static json_t *ratio_object(const study_record *record, int baseline, const study_point *point, int terms)
+static json_t *ratio_object(const study_record *record, study_error error, int baseline, const study_point *point,
+                            int terms)
 {
     const study_plan *plan = record->plan;
-    const study_ratio ratio = study_ratio_mean(record, baseline, point, terms);
+    const study_ratio ratio = study_ratio_mean(record, error, baseline, point, terms);
     char name[STUDY_BASELINE_NAME];
     json_t *object = point_object(plan, point);
     study_baseline_name(plan, baseline, name);
+    json_object_set_new(object, "of", json_string(study_error_name(error)));
     json_object_set_new(object, "against", json_string(name));
     json_object_set_new(object, "time_of", terms < 0 ? json_null() : json_string(plan->strategies[terms].name));
     json_object_set_new(object, "mean", json_number(ratio.mean));
@@ -307,14 +353,14 @@ static json_t *ratio_object(const study_record *record, int baseline, const stud
 }
 
 /* For the samples that are shown, against all that there are: at equal samples and at equal time. */
-static void add_ratios(const study_record *record, const study_point *point, json_t *list)
+static void add_ratios(const study_record *record, study_error error, const study_point *point, json_t *list)
 {
     char name[STUDY_BASELINE_NAME];
     for (int i = 0; i < STUDY_BASELINES && record->plan->is_shown[point->spp]; i++) {
         if (!study_baseline_name(record->plan, i, name))
             continue;
-        json_array_append_new(list, ratio_object(record, i, point, STUDY_EQUAL_SAMPLES));
-        json_array_append_new(list, ratio_object(record, i, point, study_terms_of_paper(record->plan)));
+        json_array_append_new(list, ratio_object(record, error, i, point, STUDY_EQUAL_SAMPLES));
+        json_array_append_new(list, ratio_object(record, error, i, point, study_terms_of_paper(record->plan)));
     }
 }
 
@@ -329,7 +375,9 @@ void study_summary_describe(const study_record *record, json_t *object)
         if (point.environment != 0)
             continue;
         json_array_append_new(means, mean_object(record, &point));
-        add_ratios(record, &point, ratios);
+        add_ratios(record, STUDY_RELMSE, &point, ratios);
+        if (plan->sequence > 1)
+            add_ratios(record, STUDY_FLICKER, &point, ratios);
     }
     json_object_set_new(object, "curves", curves);
     json_object_set_new(object, "means", means);

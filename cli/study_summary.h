@@ -12,6 +12,7 @@ typedef struct study_curve {
     uint32_t count;
     double spp[STUDY_LIST], ms[STUDY_LIST], rmse[STUDY_LIST], relmse[STUDY_LIST], lab[STUDY_LIST];
     double sampling_ms[STUDY_LIST]; /* part of ms that goes to pools and shading */
+    double flicker[STUDY_LIST];     /* NaN where it was not measured */
     double reference_rmse;          /* standard error of the reference */
 } study_curve;
 
@@ -49,12 +50,13 @@ int study_terms_of_paper(const study_plan *plan);
 typedef struct study_score {
     double relmse, lab, ms; /* ms: of the whole frame */
     double spp;             /* how many samples those terms let it have */
-    double useful;          /* share; only at equal samples */
+    double flicker;
+    double useful, flicker_ratio; /* useful: share; both only at equal samples */
 } study_score;
 
 study_score study_score_of(const study_record *record, const study_point *point, int terms);
 
-/* Means over all environments: geometric ones but for lab and useful. */
+/* Means over all environments: geometric ones but for lab, useful and flicker_ratio. */
 study_score study_score_mean(const study_record *record, uint32_t material, uint32_t strategy, uint32_t spp, int terms);
 
 /* ---- ratios ---------------------------------------------------------------------------------------------------- */
@@ -66,7 +68,13 @@ enum { STUDY_BASELINES = 2, STUDY_BASELINE_NAME = 64 };
 /* "face or face+brdf", as far as they are in the plan, without options of their own. False: none is. */
 bool study_baseline_name(const study_plan *plan, int baseline, char name[STUDY_BASELINE_NAME]);
 
-/* A strategy's relMSE as a part of the baseline's. */
+/* What is compared. */
+typedef enum study_error { STUDY_RELMSE, STUDY_FLICKER } study_error;
+
+/* "relMSE", "flicker" */
+const char *study_error_name(study_error error);
+
+/* A strategy's error as a part of the baseline's. */
 typedef struct study_ratio {
     double mean;          /* geometric, over all environments; NaN where one has no such number */
     double worst;         /* the greatest that there is; NaN: there is none */
@@ -74,7 +82,8 @@ typedef struct study_ratio {
 } study_ratio;
 
 /* Of all environments, whichever the point names. */
-study_ratio study_ratio_mean(const study_record *record, int baseline, const study_point *point, int terms);
+study_ratio study_ratio_mean(const study_record *record, study_error error, int baseline, const study_point *point,
+                             int terms);
 
 /* ---- JSON ------------------------------------------------------------------------------------------------------ */
 

@@ -17,12 +17,12 @@ enum { MAP_WIDTH = 32, MAP_HEIGHT = 16 };
 /* ---- scenes -------------------------------------------------------------------------------- */
 
 /* A sky with a bright spot, which no strategy finds hard and none finds trivial. */
-static void write_map(const char *path)
+static void write_spot(const char *path, int column)
 {
     float rgba[MAP_HEIGHT][MAP_WIDTH][4];
     for (int y = 0; y < MAP_HEIGHT; y++)
         for (int x = 0; x < MAP_WIDTH; x++) {
-            bool is_spot = y == 4 && x > 12 && x < 16;
+            bool is_spot = y == 4 && x > column && x < column + 4;
             for (int c = 0; c < 3; c++)
                 rgba[y][x][c] = (is_spot ? 20 : 0.5f) + 0.1f * (float)c;
             rgba[y][x][3] = 1;
@@ -31,6 +31,11 @@ static void write_map(const char *path)
     const helio_picture map = {.width = MAP_WIDTH, .height = MAP_HEIGHT, .rgba = rgba[0][0]};
     assert_ok(helio_picture_write(context, path, &map, NULL));
     helio_context_destroy(context);
+}
+
+static void write_map(const char *path)
+{
+    write_spot(path, 12);
 }
 
 #define SCENE "study --mesh tetrahedron.obj --size 64x36 --env-size 16 --envs map.pfm --threads 2 "
@@ -461,6 +466,98 @@ static void finds_environments(void **state)
     json_decref(study);
 }
 
+/* With one seed and a light that stands still all frames are the same; with new samples in each, flicker is relMSE but
+ * for chance: 500 pixels whose errors are alike in some twenty groups, over 4 changes, differ by no more than a tenth
+ * from the mean of all. */
+static void flicker_is_between_still_and_new(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+    write_map("map.pfm");
+#define NOISE                                                                                                          \
+    SCENE "--spp 16 --strategies face,product+brdf --frames 5..9 --turn 0 --repeat 1 --pictures 0 --materials "
+    json_t *still = run_study(NOISE "diffuse:0.8 --reference-spp 64 --out a");
+    json_t *noise = run_study(NOISE "diffuse:0.8 --reference-spp 1024 --seed-mode frame --out b");
+    for (size_t i = 0; i < 2; i++) {
+        const json_t *cell = cell_at(noise, i);
+        double ratio = number_of(cell, "flicker_ratio");
+        assert_true(number_of(cell_at(still, i), "flicker") == 0);
+        assert_true(number_of(cell_at(still, i), "sequence_relmse") > 0);
+        assert_true(is_near(ratio, number_of(cell, "flicker") / number_of(cell, "sequence_relmse")));
+        if (!(fabs(ratio - 1) < 0.1))
+            fail_msg("new samples flicker by %g of their error", ratio);
+    }
+    json_decref(still);
+    json_decref(noise);
+}
+
+static const json_t *flicker_ratio_at(const json_t *study, size_t strategy, size_t place)
+{
+    const json_t *ratio = json_array_get(member(study, "ratios"), 8 * strategy + 4 + place); /* after those of relMSE */
+    assert_non_null(ratio);
+    assert_string_equal(text_of(ratio, "of"), "flicker");
+    return ratio;
+}
+
+static void holds_flicker_against_others(void **state)
+{
+    static char tables[1 << 14];
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+#define DAY "study --mesh tetrahedron.obj --size 64x36 --env-size 16 --envs sky:day --day-frames 240 --threads 2 "
+    succeeds(DAY "--frames 100..102 --spp 4,16 --show-spp 16 --strategies face,light+brdf --reference-spp 256 --out s");
+    json_t *study = load_json("s/study.json");
+    double parts = number_of(cell_at(study, 3), "flicker") / number_of(cell_at(study, 1), "flicker");
+    assert_int_equal(json_array_size(member(study, "ratios")), 2 * 8);
+    assert_true(is_near(number_of(flicker_ratio_at(study, 1, 0), "mean"), parts));
+    assert_true(is_near(number_of(flicker_ratio_at(study, 0, 1), "mean"), 1)); /* face in its own time */
+    assert_non_null(strstr(program_out, "of relMSE"));
+    read_text("s/study.md", tables, sizeof tables);
+    assert_non_null(strstr(tables, "16 spp | flicker | / relMSE | in "));
+    char *page = read_page("s/study.html");
+    check_markup(page);
+    assert_non_null(strstr(page, "<caption>Flicker"));
+    free(page);
+    fails(DAY "--frames 100..103 --spp 4,16 --strategies face,light+brdf --reference-spp 256 --out s --resume", 1,
+          "another frames");
+    fails(DAY "--sequence 3 --frames 0..2", 2, "--frames");
+    fails(DAY "--frames 0..1000", 2, "1000");
+    fails(DAY "--frames 240..241 --out t", 2, "240");
+    json_decref(study);
+}
+
+/* Of seven files the one in the middle is studied as if it were alone, though others have been read since. */
+static void keeps_the_frames_of_files(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+    for (int i = 0; i < 7; i++) {
+        char path[32];
+        snprintf(path, sizeof path, "f_%d.pfm", i);
+        write_spot(path, 3 * i);
+    }
+#define ONE SCENE "--spp 16 --strategies face --repeat 1 --reference-spp 16 --pictures 0 "
+    json_t *sequence = run_study(ONE "--envs f_%d.pfm --frames 0..6 --out a");
+    json_t *alone = run_study(ONE "--envs f_3.pfm --out b");
+    assert_true(json_equal(member(cell_at(sequence, 0), "rmse"), member(cell_at(alone, 0), "rmse")));
+    json_decref(sequence);
+    json_decref(alone);
+}
+
+/* auto knows when not to look at the light, which product+brdf does not. */
+static void studies_auto_as_it_is(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+    json_t *study = run_study("study --mesh tetrahedron.obj --size 32x18 --env-size 32 --spp 16 --repeat 1 --materials "
+                              "diffuse:0.8 --envs constant:1,1,1 --strategies auto,product+brdf,auto:brdf-share=0.4 "
+                              "--reference-spp 4096 --out s");
+    assert_string_equal(text_of(cell_at(study, 0), "strategy"), "auto");
+    assert_string_equal(text_of(cell_at(study, 2), "strategy"), "auto:brdf-share=0.4");
+    assert_true(number_of(cell_at(study, 0), "rmse") < number_of(cell_at(study, 1), "rmse") / 5);
+    json_decref(study);
+}
+
 #define TRUTH SCENE "--size 32x18 --spp 16 --strategies face --repeat 1 --materials diffuse:0.8 "
 
 /* Two references differ, as RMSE, by about the root of the sum of their squared standard errors; and errors against
@@ -522,6 +619,10 @@ int main(void)
         program_test(gives_strategies_options),
         program_test(takes_quadrature_for_the_truth),
         program_test(holds_strategies_against_others),
+        program_test(flicker_is_between_still_and_new),
+        program_test(holds_flicker_against_others),
+        program_test(keeps_the_frames_of_files),
+        program_test(studies_auto_as_it_is),
         program_test(refuses_what_makes_no_study),
     };
     return cmocka_run_group_tests_name("study", tests, set_up_program, tear_down_program);
