@@ -297,7 +297,7 @@ const cli_option option_table[] = {
      STUDIED(GROUP_SAMPLING)},
     {.name = "pool-length",
      .argument = "M",
-     .shown = "1024, for product 256",
+     .shown = "1024, for product 128 to 1024, as --spp needs",
      .minimum = 64,
      .maximum = 65536,
      .help =

@@ -196,15 +196,15 @@ static char *read_page(const char *path)
 
 /* ---- tests --------------------------------------------------------------------------------- */
 
-/* Quasi-random points make errors fall faster than -1/2; noise of three repetitions and few pixels may make it look
- * slower by 0.1. A bias of a tenth of the error at 64 samples would flatten the slope by less, one as large by 0.12, so
- * that the reference's bound below tells more of bias. */
+/* Quasi-random points make errors fall faster than -1/2; noise of twelve repetitions, few pixels and fewer normals may
+ * make it look slower by 0.1. A bias of a tenth of the error at 64 samples would flatten the slope by less, one as
+ * large by 0.12, so that the reference's bound below tells more of bias. */
 static void errors_fall_as_they_must(void **state)
 {
     (void)state;
     skip_without(NEEDS_RENDERER);
     write_map("map.pfm");
-    json_t *study = run_study(SMALL "--out s --materials diffuse:0.8;phong:kd=0.5,ks=0.5,n=20");
+    json_t *study = run_study(SMALL "--repeat 12 --out s --materials diffuse:0.8;phong:kd=0.5,ks=0.5,n=20");
     size_t index;
     const json_t *curve;
     assert_int_equal(json_array_size(member(study, "cells")), 2 * 8 * 3);
@@ -467,8 +467,8 @@ static void finds_environments(void **state)
 }
 
 /* With one seed and a light that stands still all frames are the same; with new samples in each, flicker is relMSE but
- * for chance: 500 pixels whose errors are alike in some twenty groups, over 4 changes, differ by no more than a tenth
- * from the mean of all. */
+ * for chance: 500 pixels whose errors are alike in some twenty groups, or in the windows of a few pools, over 4
+ * changes. */
 static void flicker_is_between_still_and_new(void **state)
 {
     (void)state;
@@ -484,7 +484,7 @@ static void flicker_is_between_still_and_new(void **state)
         assert_true(number_of(cell_at(still, i), "flicker") == 0);
         assert_true(number_of(cell_at(still, i), "sequence_relmse") > 0);
         assert_true(is_near(ratio, number_of(cell, "flicker") / number_of(cell, "sequence_relmse")));
-        if (!(fabs(ratio - 1) < 0.1))
+        if (!(fabs(ratio - 1) < 0.2))
             fail_msg("new samples flicker by %g of their error", ratio);
     }
     json_decref(still);

@@ -34,7 +34,8 @@ typedef struct helio_renderer_desc {
                                        1 looks through the pixel's centre, more are spread over the pixel. */
     helio_strategy strategy;
     helio_weighting weighting;
-    uint32_t pool_length; /* M, see helio_pools_desc; default 1024, for PRODUCT 256 */
+    uint32_t pool_length; /* M, see helio_pools_desc; default 1024, for PRODUCT the power of two that is 4 spp aa or
+                             next to it, 128..1024 */
     uint32_t bins;        /* B, for PRODUCT; default 8 */
     float brdf_share;     /* default 0.5 */
     bool no_beta;

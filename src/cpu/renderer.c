@@ -14,6 +14,9 @@
 
 enum { MAX_SIZE = 16384, MAX_SPP = 1 << 20, MAX_AA = 4096 };
 
+/* Samples in a pool of a bin of normals, where nobody says how many. */
+enum { LEAST_LENGTH_OF_BIN = 128, GREATEST_LENGTH_OF_BIN = 1024 };
+
 /* How often the caller hears of progress, roughly. */
 static const double SLICE_MS = 75.0;
 
@@ -89,10 +92,27 @@ static helio_status resolve_desc(const helio_renderer_desc *given, helio_rendere
     return HELIO_OK;
 }
 
+/* M for pools of bins: so long that one pass holds all samples of a pixel, as samples of one pool are spread out more
+ * evenly than those of several; pools then cost a part of a frame that hardly depends on its samples. For others 0, the
+ * default. */
+static uint32_t pool_length_for(const helio_renderer_desc *desc)
+{
+    const helio_strategy strategy = helio_strategy_resolve(desc->strategy);
+    const uint64_t samples = (uint64_t)desc->spp * desc->aa;
+    uint32_t length = LEAST_LENGTH_OF_BIN;
+    if (strategy_divide(strategy).light != STRATEGY_LIGHT_BINS)
+        return 0;
+    while (length < POOL_SHARE_OF_BIN * samples && length < GREATEST_LENGTH_OF_BIN)
+        length *= 2;
+    return length;
+}
+
 static helio_status create_parts(helio_renderer *renderer)
 {
     const helio_renderer_desc *desc = &renderer->desc;
-    const helio_pools_desc pools = {.strategy = desc->strategy, .length = desc->pool_length, .bins = desc->bins};
+    const helio_pools_desc pools = {.strategy = desc->strategy,
+                                    .length = desc->pool_length != 0 ? desc->pool_length : pool_length_for(desc),
+                                    .bins = desc->bins};
     HELIO_TRY(helio_tables_create(desc->environment, desc->weighting, &renderer->tables));
     HELIO_TRY(helio_pools_create(renderer->tables, &pools, &renderer->pools));
     const film_desc film = {

@@ -357,7 +357,8 @@ static helio_status run_step(struct vulkan_renderer *v, frame_slot *slot, const 
 static film_light sums_of_pixel(const struct vulkan_renderer *v, size_t pixel)
 {
     const float *rgba = (const float *)v->back.picture_back.mapped + 4 * pixel;
-    film_light sums = {.covered = (double)rgba[3], .object = (double)((const float *)v->back.object_back.mapped)[pixel]};
+    film_light sums = {.covered = (double)rgba[3],
+                       .object = (double)((const float *)v->back.object_back.mapped)[pixel]};
     for (int c = 0; c < 3; c++)
         sums.rgb[c] = (double)rgba[c];
     if (v->catches) {

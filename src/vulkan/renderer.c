@@ -223,8 +223,9 @@ void vulkan_renderer_destroy(struct vulkan_renderer *v)
 {
     if (v == NULL)
         return;
-    vulkan_buffer *const all[] = {&v->step,    &v->counts, &v->picture,     &v->object,   &v->nodes,         &v->triangles,
-                                  &v->normals, &v->caught, &v->caught_back, &v->surfaces, &v->surfaces_back, NULL};
+    vulkan_buffer *const all[] = {&v->step,        &v->counts,    &v->picture,       &v->object,
+                                  &v->nodes,       &v->triangles, &v->normals,       &v->caught,
+                                  &v->caught_back, &v->surfaces,  &v->surfaces_back, NULL};
     for (int i = 0; i < LIGHT_SLOTS; i++) {
         commands_destroy(&v->slots[i].commands);
         buffer_destroy(v->device, &v->slots[i].counts_back);
