@@ -9,7 +9,7 @@ DEPENDENCIES = yes
 SECONDS = 60
 TARGET =
 LINT =
-SAN_SKIP =
+SAN_TESTS =
 JOBS := $(shell nproc 2>/dev/null || echo 2)
 
 # Every test program prints the name of each of its tests, so show what they print.
@@ -20,6 +20,10 @@ install_dependencies = @scripts/install-dependencies.sh
 else
 install_dependencies = @:
 endif
+
+# What ctest knows tests of these names by.
+space := $(subst ,, )
+tests_regex = ^test_($(subst $(space),|,$(strip $(1))))$$
 
 .NOTPARALLEL:
 .PHONY: all demo figures bench test test-long san tsan fuzz core format check-format lint install clean help
@@ -68,16 +72,16 @@ test-long: build-with-tests
 	@cd $(BUILD) && $(CTEST) --label-regex long
 
 san: dependencies-test build-asan/build.ninja
-	@cmake --build build-asan
-	@cd build-asan && $(CTEST) --label-exclude long $(if $(SAN_SKIP),--exclude-regex '^($(SAN_SKIP))$$')
+	@cmake --build build-asan $(if $(SAN_TESTS),--target heliostat_program $(SAN_TESTS:%=test_%))
+	@cd build-asan && $(CTEST) --label-exclude long $(if $(SAN_TESTS),--tests-regex '$(call tests_regex,$(SAN_TESTS))')
 
 # What shares data between threads, and by test_frame and test_cli whole pictures: test_render would take ten times as
 # long.
 TSAN_TESTS = core environment source video_files tables pools isa rays frame hostile comparison cli
-space := $(subst ,, )
+TSAN_THREADS = sequence reference
 tsan: dependencies-test build-tsan/build.ninja
-	@cmake --build build-tsan --target $(TSAN_TESTS:%=test_%) test_sequence test_reference
-	@cd build-tsan && $(CTEST) --tests-regex '^test_($(subst $(space),|,$(strip $(TSAN_TESTS))))$$|^(sequence|reference)_threads$$'
+	@cmake --build build-tsan --target $(TSAN_TESTS:%=test_%) $(TSAN_THREADS:%=test_%)
+	@cd build-tsan && $(CTEST) --tests-regex '$(call tests_regex,$(TSAN_TESTS))|^($(subst $(space),|,$(strip $(TSAN_THREADS))))_threads$$'
 
 # Each target for so long, or one of them alone; docs/fuzzing.md tells more.
 fuzz: dependencies-ci build-fuzz/build.ninja
