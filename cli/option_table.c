@@ -331,8 +331,8 @@ const cli_option option_table[] = {
      MEMBER(no_beta),
      STUDIED(GROUP_SAMPLING)},
     {.name = "no-control",
-     .help = "leave out the control variate, by which the product strategies add light that is known exactly to matte "
-             "surfaces, in place of the samples' noise",
+     .help = "leave out the control variate, by which the product strategies put what is known exactly of the light in "
+             "place of the samples' noise: all of it on matte surfaces, its colour on those that shine",
      .kind = OPTION_FLAG,
      MEMBER(no_control),
      STUDIED(GROUP_SAMPLING)},

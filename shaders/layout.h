@@ -273,6 +273,7 @@ struct layout_state {
     ADDRESS(vectors, listed);      /* [list_capacity][2]: as in pools, given the tile */
     ADDRESS(doubles, moments);     /* [6][T][T][3]: see tile_moments in evenness.c */
     ADDRESS(vectors, tile_light);   /* [tiles][LAYOUT_CONTROL_ROWS] */
+    ADDRESS(vectors, tile_hues);    /* [tiles + 1]: hue and brightness; at the end brightness per light */
     ADDRESS(vectors, known);        /* [bins][LAYOUT_CONTROL_ROWS] */
     ADDRESS(vectors, control_sums); /* [bins][chunks + 1][LAYOUT_CONTROL_ROWS] */
     ADDRESS(vectors, groups);  /* [tiles / LAYOUT_TILE_GROUP]: direction to the middle, edge, see tiles.h */
@@ -354,7 +355,7 @@ struct layout_push {
 #ifndef VULKAN
 _Static_assert(sizeof(struct layout_sums) == 176, "as in the shaders");
 _Static_assert(sizeof(struct layout_material) == 48 && sizeof(struct layout_point) == 48, "as in the shaders");
-_Static_assert(sizeof(struct layout_state) == 27 * 8 + 18 * 4, "as in the shaders");
+_Static_assert(sizeof(struct layout_state) == 28 * 8 + 18 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_step) == 16 * 8 + 58 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_map) == 6 * 8 + 6 * 4 + LAYOUT_VIEWS * 20, "as in the shaders");
 _Static_assert(sizeof(struct layout_sky) == 42 * 4 && sizeof(struct layout_sun_texel) == 16, "as in the shaders");

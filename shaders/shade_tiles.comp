@@ -124,9 +124,9 @@ vec2 weigh(brdf b, tile_lobe lobe, uint position)
     return tile.w > 0.0 ? tile.w * lobe_at(b, lobe, tile.xyz, x) : vec2(0.0);
 }
 
-// Fills in the sums of `count` tiles and returns that of all. left: part of the light that is left to BRDF samples. Threads take pieces of odd lengths, so that neighbours reach
-// for different banks of memory.
-uint weigh_tiles(brdf b, uint count, out float left)
+// Fills in the sums of `count` tiles and returns that of all. left: part of the light that is left to BRDF samples.
+// brightness: of the rest. Threads take pieces of odd lengths, so that neighbours reach for different banks of memory.
+uint weigh_tiles(brdf b, uint count, out float left, out float brightness)
 {
     const tile_lobe lobe = prepare_lobe(b);
     const uint each = (count + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x | 1u;
@@ -141,6 +141,7 @@ uint weigh_tiles(brdf b, uint count, out float left)
         light += weight;
     }
     light = sum_of_group(vec4(light, 0.0, 0.0)).xy;
+    brightness = light.x;
     left = light.y > light.x ? 1.0 - light.x / light.y : 0.0;
     const int exponent = fixed_point_exponent(greatest_in_group(largest), summand_bits(STATE.tile_count));
     const float factor = power_of_two(exponent);
@@ -179,7 +180,7 @@ uint find_tile(uint whole, uint count)
 }
 
 // A sample at a place in the sums, in 2^-20 of a unit: what is left of it in its tile counts through the tile's list.
-void add_tile_sample(prepared_point p, uint64_t place, uint count, uint total, inout vec4 sum)
+void add_tile_sample(prepared_point p, uint64_t place, uint count, uint total, inout vec4 sum, inout vec3 hues)
 {
     const uint tile = find_tile(uint(place >> 20), count), weight = sums[tile + 1u] - sums[tile];
     const uint position = position_of(tile), start = STATE.list_starts.at[position], length = STATE.list_starts.at[position + 1u] - start;
@@ -188,8 +189,9 @@ void add_tile_sample(prepared_point p, uint64_t place, uint count, uint total, i
     const uint index = 2u * (start + min(element, length - 1u));
     const vec4 direction = STATE.listed.at[index];
     const float probability = float(weight) / float(total);
-    const vec3 light = STATE.listed.at[index + 1u].rgb / probability;
-    add_light_sample(p, direction.xyz, light, probability * direction.w, p.expected[0], true, sum);
+    const vec3 light = STATE.listed.at[index + 1u].rgb;
+    hues += light * (dot(STATE.tiles.at[position].xyz, direction.xyz) / STATE.tile_hues.at[position].w);
+    add_light_sample(p, direction.xyz, light / probability, probability * direction.w, p.expected[0], true, sum);
 }
 
 float density_of_tiles(prepared_point p, face_place at, uint total)
@@ -200,20 +202,42 @@ float density_of_tiles(prepared_point p, face_place at, uint total)
     return weight != 0u ? p.expected[0] * (float(weight) / float(total) * tile_density(at)) : 0.0;
 }
 
+// What is known of the hue of light samples, see control_hue() in estimate.c: a thread's part of it. hues: sums over its
+// samples.
+vec3 control_hue(prepared_point p, uint count, uint total, float brightness, vec3 hues)
+{
+    if (STEP.control_part == 0.0 || p.end[0] == 0u)
+        return vec3(0.0);
+    vec3 known = vec3(0.0);
+    for (uint i = gl_LocalInvocationID.x; i < count; i += gl_WorkGroupSize.x) {
+        const uint weight = sums[i + 1u] - sums[i];
+        if (weight != 0u)
+            known += float(weight) * STATE.tile_hues.at[position_of(i)].rgb;
+    }
+    const float share = p.expected[0] / float(STEP.samples);
+    const vec3 colour = p.surface.colours[0] + p.surface.colours[1];
+    const float bright = brightness * STATE.tile_hues.at[STATE.tile_count].x / luminance(colour);
+    const vec3 control = STEP.control_part * share * share * bright * colour *
+                         (known / float(total) - hues / float(p.end[0]));
+    return any(isnan(control)) || any(isinf(control)) ? vec3(0.0) : control;
+}
+
 // Places of samples are at equal steps through the sums of `count` tiles, from a random start.
-vec4 light_point(prepared_point p, uint count, uint total)
+vec4 light_point(prepared_point p, uint count, uint total, float brightness)
 {
     vec4 sum = vec4(0.0);
+    vec3 hues = vec3(0.0);
     const uint64_t stride = p.end[0] != 0u ? (uint64_t(total) << 20) / p.end[0] : 0UL;
     const uint64_t start = part_of(stride, hash_combine(p.seed, LAYOUT_STREAM_WINDOW));
     origin_of_rays = read_origin(group_index());
     for (uint i = gl_LocalInvocationID.x; i < p.end[0]; i += gl_WorkGroupSize.x)
-        add_tile_sample(p, i * stride + start, count, total, sum);
+        add_tile_sample(p, i * stride + start, count, total, sum, hues);
     for (uint i = gl_LocalInvocationID.x; i < p.surface_count; i += gl_WorkGroupSize.x) {
         const surface_sample drawn = draw_surface_sample(p, i);
         if (drawn.counts)
             add_surface_sample(p, drawn, density_of_tiles(p, drawn.at, total), sum);
     }
+    sum.rgb += control_hue(p, count, total, brightness, hues);
     return sum;
 }
 
@@ -236,11 +260,12 @@ void main()
     prepared_point p = prepare(given);
     if (!weighs_tiles(p))
         return;
-    float left;
-    const uint count = choose_groups(p.surface.normal) * LAYOUT_TILE_GROUP, total = weigh_tiles(p.surface, count, left);
+    float left, brightness;
+    const uint count = choose_groups(p.surface.normal) * LAYOUT_TILE_GROUP;
+    const uint total = weigh_tiles(p.surface, count, left, brightness);
     divide_samples(left, p);
     p.surface.specular_share = 1.0; // of what the tiles leave over
-    const vec4 sum = sum_of_group(total != 0u ? light_point(p, count, total) : vec4(0.0));
+    const vec4 sum = sum_of_group(total != 0u ? light_point(p, count, total, brightness) : vec4(0.0));
     if (gl_LocalInvocationID.x != 0u)
         return;
     film_add(given.pixel, sum.rgb * STEP.intensity, true, given.hit == LAYOUT_HIT_OBJECT);

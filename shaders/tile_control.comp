@@ -1,7 +1,7 @@
 #version 460
 // SPDX-License-Identifier: MIT
 //
-// A tile for each work group: the integrals of its radiance x direction. As light_tile() in src/sampling/control.c.
+// A tile for each work group: the integrals of its radiance x direction, and its hue. As src/sampling/tile_colours.c.
 #include "common.glsl"
 #include "random.glsl"
 #include "cube.glsl"
@@ -39,6 +39,9 @@ void write_tile(uint position, uint face, vec3 axis, vec3 right, vec3 down)
         towards += moment * centre[row];
     }
     STATE.tile_light.at[position * LAYOUT_CONTROL_ROWS + 3u] = vec4(towards, 0.0);
+    const float value = 0.2126 * towards.r + 0.7152 * towards.g + 0.0722 * towards.b;
+    const float brightness = value > 0.0 ? value : 1.0;
+    STATE.tile_hues.at[position] = vec4(towards / brightness, brightness);
 }
 
 void main()

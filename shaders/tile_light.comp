@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: MIT
 //
 // The light of all tiles in proportion to the brightest, by a single work group. As find_light() in
-// src/sampling/tiles.c.
+// src/sampling/tiles.c. And what brightness that is, as find_hues() in tile_colours.c has it.
 #include "common.glsl"
 #include "fixed_point.glsl"
 #include "scan.glsl"
+
+shared vec2 parts[gl_WorkGroupSize.x]; // brightness and light
 
 const float LEAST_LIGHT = 8.67361738e-19; // 2^-60
 
@@ -32,6 +34,17 @@ void main()
         highest = max(highest, total.sum != 0u ? uint(top_bit(total) + 0x10000) : 0u);
     }
     const int exponent = int(greatest_in_group(highest)) - 0x10000 + 1; // the brightest is below 2^this
-    for (uint i = gl_LocalInvocationID.x; i < STATE.tile_count; i += gl_WorkGroupSize.x)
-        STATE.tiles.at[i].w = light_of(total_at(i), exponent);
+    vec2 sums = vec2(0.0);
+    for (uint i = gl_LocalInvocationID.x; i < STATE.tile_count; i += gl_WorkGroupSize.x) {
+        const float light = light_of(total_at(i), exponent);
+        STATE.tiles.at[i].w = light;
+        sums += light > 0.0 ? vec2(STATE.tile_hues.at[i].w, light) : vec2(0.0);
+    }
+    parts[gl_LocalInvocationID.x] = sums;
+    barrier();
+    if (gl_LocalInvocationID.x != 0u)
+        return;
+    for (uint i = 1u; i < gl_WorkGroupSize.x; i++)
+        sums += parts[i];
+    STATE.tile_hues.at[STATE.tile_count] = vec4(sums.y > 0.0 ? sums.x / sums.y : 0.0);
 }

@@ -178,8 +178,7 @@ typedef struct helio_estimate_desc {
                                     multiplied by those of the share */
     bool no_beta;     /* spread samples by flux alone over the faces that reach above the horizon: shows the
                                     discontinuities of the paper's supplement, Figure 1 */
-    bool no_control;  /* leave out the control variate, which adds light known exactly to matte points that read
-                                    pools of PRODUCT and PRODUCT_BRDF */
+    bool no_control;  /* leave out the control variate, see helio_counts */
     helio_visibility visibility; /* default: nothing is in the way */
     void *user;                  /* handed to visibility */
 } helio_estimate_desc;
@@ -193,10 +192,11 @@ typedef struct helio_counts {
                              as is: */
     uint32_t first[7];    /* a light technique takes samples first ... first + realised - 1 of its pool; else 0, and
                              for HELIO_POOL_OF_TILES */
-    /* The control variate, radiance: light of the pool's bin that is known exactly, less what the point's samples say
-     * of it, and so 0 on average; half of that where desc has a visibility function. The estimate is the sum of the
-     * visible contributions and this. May be negative; 0 where there is none. Hosts that trace the samples themselves
-     * may take any part of it, and half is good. */
+    /* The control variate of PRODUCT and PRODUCT_BRDF, radiance: what is known exactly of the light of a matte point's
+     * bin, or of the colours of the tiles that a shiny point weighs, less what the point's samples say of it, and so 0
+     * on average; half of that where desc has a visibility function. The estimate is the sum of the visible
+     * contributions and this. May be negative; 0 where there is none. Hosts that trace the samples themselves may take
+     * any part of it, and half is good. */
     float control[3];
 } helio_counts;
 

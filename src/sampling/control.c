@@ -4,10 +4,6 @@
 #include "core/context.h"
 #include "sampling/kernels.h"
 
-#include <string.h>
-
-enum { LEAST_CELLS = 32 }; /* along an edge of a face, see add_texels() */
-
 helio_status control_create(helio_context *context, const normal_bins *bins, light_control **out)
 {
     light_control *c = context_allocate(context, 1, sizeof *c);
@@ -35,115 +31,24 @@ void control_destroy(light_control *c)
     context_release(c->context, c);
 }
 
-/* ---- light of the tiles ---- */
+/* ---- light of the bins ---- */
 
 typedef struct control_work {
     light_control *control;
     const normal_bins *bins;
-    const helio_environment *environment;
     const kernel_set *kernels;
 } control_work;
-
-/* Texels of cubes with few of them are cut into split x split cells. */
-typedef struct tile_cells {
-    uint32_t split, first_column, count; /* columns of cells */
-    float width;
-    float u[CONTROL_COLUMNS]; /* [count] */
-} tile_cells;
-
-static void lay_columns(const tiles *t, uint32_t column, tile_cells *cells)
-{
-    cells->split = (LEAST_CELLS + t->size - 1) / t->size;
-    cells->first_column = t->starts[column];
-    cells->count = (t->starts[column + 1] - t->starts[column]) * cells->split;
-    cells->width = 2.0f / (float)(t->size * cells->split);
-    for (uint32_t i = 0; i < cells->count; i++)
-        cells->u[i] = ((float)(cells->first_column * cells->split + i) + 0.5f) * cells->width - 1.0f;
-}
-
-/* As one row; see add_texels() for why. */
-static void add_cut_row(const control_work *work, const tile_cells *cells, texel_rows texels, uint32_t row,
-                        control_columns *sums)
-{
-    float copies[3 * LEAST_CELLS * 2];
-    for (uint32_t i = 0; i < cells->count; i++)
-        memcpy(copies + 3 * (size_t)i, texels.rgb + 3 * (size_t)(i / cells->split), 3 * sizeof(float));
-    texels.rgb = copies;
-    texels.rows = 1;
-    for (uint32_t i = 0; i < cells->split; i++) {
-        texels.v = ((float)(row * cells->split + i) + 0.5f) * cells->width - 1.0f;
-        work->kernels->add_texels(&texels, sums);
-    }
-}
-
-static void add_rows(const control_work *work, const tile_cells *cells, uint32_t face, uint32_t first, uint32_t end,
-                     control_columns *sums)
-{
-    texel_rows texels = {.stride = (size_t)3 * work->environment->size,
-                         .count = cells->count,
-                         .columns = cells->u,
-                         .width = cells->width};
-    for (uint32_t row = first; row < end; row += texels.rows) {
-        texels.rgb = environment_texel(work->environment, face, row, cells->first_column);
-        texels.rows = cells->split > 1 ? 1 : end - row < TEXEL_ROWS ? end - row : TEXEL_ROWS;
-        texels.v = ((float)row + 0.5f) * cells->width - 1.0f;
-        if (cells->split > 1)
-            add_cut_row(work, cells, texels, row, sums);
-        else
-            work->kernels->add_texels(&texels, sums);
-    }
-}
-
-static vec3 sum_columns(const tile_cells *cells, const control_columns *sums, uint32_t face, int c)
-{
-    const cube_face *f = &cube_faces[face];
-    double axis = 0, right = 0, down = 0;
-    for (uint32_t i = 0; i < cells->count; i++) {
-        axis += (double)sums->along_axis[c][i];
-        right += (double)(sums->along_right[c][i] * cells->u[i]);
-        down += (double)sums->along_down[c][i];
-    }
-    return add_scaled(add_scaled(scale(f->axis, (float)axis), f->right, (float)right), f->down, (float)down);
-}
-
-static void light_tile(void *data, size_t index)
-{
-    const control_work *work = data;
-    const tiles *t = work->bins->tiles;
-    const uint32_t grid = (uint32_t)index, column = grid % t->per_edge, row = grid / t->per_edge % t->per_edge;
-    const uint32_t face = grid / (t->per_edge * t->per_edge), position = t->positions[grid];
-    float(*light)[TILES_MOST] = work->control->light.of;
-    control_columns sums;
-    tile_cells cells;
-    lay_columns(t, column, &cells);
-    for (int c = 0; c < 3; c++) {
-        memset(sums.along_axis[c], 0, cells.count * sizeof(float));
-        memset(sums.along_right[c], 0, cells.count * sizeof(float));
-        memset(sums.along_down[c], 0, cells.count * sizeof(float));
-    }
-    add_rows(work, &cells, face, t->starts[row], t->starts[row + 1], &sums);
-    for (int c = 0; c < 3; c++) {
-        const vec3 moment = sum_columns(&cells, &sums, face, c);
-        light[c][position] = moment.x;
-        light[3 + c][position] = moment.y;
-        light[6 + c][position] = moment.z;
-        light[9 + c][position] = dot(moment, (vec3){t->x[position], t->y[position], t->z[position]});
-    }
-}
-
-/* ---- light of the bins ---- */
 
 static void know_bin(void *data, size_t bin)
 {
     const control_work *work = data;
     light_control *c = work->control;
-    work->kernels->know_bin(work->bins->tiles, &c->light, &work->bins->bins[bin], &c->known[bin]);
+    work->kernels->know_bin(work->bins->tiles, &work->bins->bins[bin], &c->known[bin]);
 }
 
-void control_update(light_control *c, const normal_bins *bins, const helio_environment *environment)
+void control_update(light_control *c, const normal_bins *bins)
 {
-    control_work work = {c, bins, environment, kernels_of(context_isa(c->context))};
-    context_parallel_for(c->context, bins->tiles->count, light_tile, &work);
+    control_work work = {c, bins, kernels_of(context_isa(c->context))};
     context_parallel_for(c->context, bins->count, know_bin, &work);
 }
 

@@ -12,45 +12,17 @@
 
 #include "sampling/normal_bins.h"
 
-enum {
-    CONTROL_CHUNK = 4,     /* samples that are summed together */
-    CONTROL_COLUMNS = 256, /* texels of a row that are summed together, at most: a tile has no more */
-    TEXEL_ROWS = 4         /* rows that are summed together */
-};
+enum { CONTROL_CHUNK = 4 }; /* samples that are summed together */
 
 /* What a normal (x, y, z, 1) is multiplied by: red, green, blue and nothing, so that a row is a vector register. */
 typedef struct control_matrix {
     alignas(16) float rows[4][4];
 } control_matrix;
 
-enum { CONTROL_NUMBERS = 12 };
-
-/* Integrals over each tile, [count] each: of radiance x direction and of radiance x cosine to the tile's centre, by row
- * of a control_matrix and colour. */
-typedef struct tile_light {
-    alignas(64) float of[CONTROL_NUMBERS][TILES_MOST];
-} tile_light;
-
-/* Sums over the texels of a column in some rows, by colour: of radiance x the integral of direction along the face's
- * axis, along its right without the factor u, and along its down. */
-typedef struct control_columns {
-    float along_axis[3][CONTROL_COLUMNS], along_right[3][CONTROL_COLUMNS], along_down[3][CONTROL_COLUMNS];
-} control_columns;
-
-/* Texels of a tile, or the cells that they are cut into. */
-typedef struct texel_rows {
-    const float *rgb; /* [rows][count][3], rows `stride` floats apart */
-    size_t stride;
-    uint32_t rows, count; /* at most TEXEL_ROWS, CONTROL_COLUMNS */
-    const float *columns; /* [count]: u of the columns' centres */
-    float v, width;       /* of the first row's centre; of a row or column */
-} texel_rows;
-
 typedef struct light_control {
     helio_context *context;
-    uint32_t bins;   /* how many */
-    uint32_t chunks; /* of a pool */
-    tile_light light;
+    uint32_t bins;         /* how many */
+    uint32_t chunks;       /* of a pool */
     control_matrix *known; /* [bins] */
     /* [bins][chunks + 1]: prefix sums over the chunks of each pool of what samples stand for. */
     control_matrix *sums;
@@ -60,7 +32,7 @@ helio_status control_create(helio_context *context, const normal_bins *bins, lig
 void control_destroy(light_control *c);
 
 /* Finds the known light of the frame. */
-void control_update(light_control *c, const normal_bins *bins, const helio_environment *environment);
+void control_update(light_control *c, const normal_bins *bins);
 
 /* Where the chunks of a bin's pool are before they are summed up. */
 static inline control_matrix *control_chunks(light_control *c, uint32_t bin)

@@ -27,7 +27,7 @@ static inline __attribute__((always_inline)) void add_texel(const float *texel, 
 
 /* rows is a constant where this is expanded: sums over the rows are then found in registers. */
 static inline __attribute__((always_inline)) void add_rows(uint32_t rows, const texel_rows *texels,
-                                                           control_columns *restrict sums)
+                                                           column_colours *restrict sums)
 {
     const float *restrict rgb = texels->rgb, *restrict columns = texels->columns;
     const float width = texels->width, v = texels->v;
@@ -46,7 +46,7 @@ static inline __attribute__((always_inline)) void add_rows(uint32_t rows, const 
     }
 }
 
-void KERNEL(add_texels)(const texel_rows *texels, control_columns *sums)
+void KERNEL(add_texels)(const texel_rows *texels, column_colours *sums)
 {
     if (texels->rows == TEXEL_ROWS)
         add_rows(TEXEL_ROWS, texels, sums);
@@ -91,7 +91,7 @@ static void add_tiles(const float *restrict factors, const float (*light)[TILES_
     sums[2] += (double)blue;
 }
 
-void KERNEL(know_bin)(const tiles *t, const tile_light *light, const normal_bin *bin, control_matrix *known)
+void KERNEL(know_bin)(const tiles *t, const normal_bin *bin, control_matrix *known)
 {
     alignas(64) float slopes[TILES_MOST];
     alignas(64) float offsets[TILES_MOST];
@@ -99,7 +99,7 @@ void KERNEL(know_bin)(const tiles *t, const tile_light *light, const normal_bin 
     for (int row = 0; row < 4; row++) {
         double sums[3] = {0};
         for (uint32_t first = 0; first < t->count; first += TILES_SUMMED)
-            add_tiles(row < 3 ? slopes : offsets, &light->of[3 * row], first,
+            add_tiles(row < 3 ? slopes : offsets, t->colours.light[row], first,
                       first + TILES_SUMMED < t->count ? first + TILES_SUMMED : t->count, sums);
         for (int c = 0; c < 3; c++)
             known->rows[row][c] = (float)sums[c];

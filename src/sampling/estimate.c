@@ -140,12 +140,15 @@ static void begin_surface_samples(gathering *g, uint32_t seed)
 /* A point that shines, of a strategy with pools of bins and BRDF samples, reads no pool but weighs tiles. */
 static void begin_tiles(gathering *g, const helio_estimate_desc *desc, uint32_t seed, float rounding)
 {
+    const kernel_set *kernels = kernels_of(context_isa(g->environment->context));
     const tiles *t = g->pools->bins->tiles;
     brdf surface = g->surface;
     tile_lobe lobe;
     brdf_prepare_share(&surface);
     tile_lobe_prepare(&lobe, t, &surface);
-    kernels_of(context_isa(g->environment->context))->weigh_point(t, &lobe, &g->tiles);
+    kernels->weigh_point(t, &lobe, &g->tiles);
+    if (!desc->no_control)
+        kernels->mix_hues(t, &g->tiles);
     g->tile_random = hash_combine(seed, STREAM_WINDOW);
     g->counts = (helio_counts){0};
     if (g->tiles.total == 0) /* as for a bin that is lit, but only below the horizon of this normal */
@@ -218,6 +221,7 @@ static void take_light(const gathering *g, const kernel_set *kernels, sample_cur
 static bool next_block(const gathering *g, const kernel_set *kernels, sample_cursor *cursor, sample_block *block)
 {
     block->count = 0;
+    memset(block->hue, 0, sizeof block->hue);
     take_light(g, kernels, cursor, block);
     if (cursor->technique == TECHNIQUE_SURFACE && block->count < BLOCK_SAMPLES) {
         uint32_t first = cursor->taken, count = take_some(g, BLOCK_SAMPLES - block->count, cursor);
@@ -275,28 +279,57 @@ static uint32_t cast_shadows(const gathering *g, const helio_shading_point *poin
     return rays.count;
 }
 
+static void add_hues(float sums[3], const sample_block *block)
+{
+    for (int c = 0; c < 3; c++)
+        sums[c] += block->hue[c];
+}
+
 static void add_sum(float rgb[3], const block_sum *sum)
 {
     for (int c = 0; c < 3; c++)
         rgb[c] += sum->rgb[c];
 }
 
+/* What is known of the light of a point that weighs tiles: its mean hue, of which its samples' mean differs by chance.
+ * hues: sums over its light samples. Of what these bring, the point's weights are a guess, times the square of their
+ * part of all: where they are few their mean hue is as noisy as it is of little weight (docs/method.md). */
+static void control_hue(const gathering *g, const helio_estimate_desc *desc, const float hues[3], float control[3])
+{
+    const float part = estimate_control_part(desc->no_control, desc->visibility != NULL);
+    if (part == 0.0f || g->counts.realised[0] == 0)
+        return;
+    const vec3 sum = add(g->surface.colours[0], g->surface.colours[1]);
+    const float colour[3] = {sum.x, sum.y, sum.z}, samples = (float)g->counts.realised[0];
+    const float share = g->counts.expected[0] / (float)desc->samples;
+    const float brightness = g->tiles.brightness * g->pools->bins->tiles->colours.per_light / luminance(colour);
+    const float factor = part * share * share * brightness * g->environment->intensity;
+    for (int c = 0; c < 3; c++) {
+        const float difference = factor * colour[c] * (g->tiles.hue[c] - hues[c] / samples);
+        control[c] = isfinite(difference) ? difference : 0.0f;
+    }
+}
+
 static void estimate_by_blocks(const gathering *g, const kernel_set *kernels, const helio_shading_point *point,
                                const helio_estimate_desc *desc, estimate_result *result)
 {
     sample_block block;
+    float hues[3] = {0};
     *result = (estimate_result){0};
     for (sample_cursor cursor = {0}; next_block(g, kernels, &cursor, &block);) {
         block_sum sum = kernels->sum_block(&block);
         result->info.samples += block.count;
         result->info.useful += sum.useful;
         add_sum(result->unoccluded, &sum);
+        add_hues(hues, &block);
         if (desc->visibility != NULL && sum.useful > 0) {
             result->info.rays += cast_shadows(g, point, desc, &block);
             sum = kernels->sum_block(&block); /* in the same order: what nothing shadows stays the same number */
         }
         add_sum(result->visible, &sum);
     }
+    if (g->has_tiles)
+        control_hue(g, desc, hues, result->control);
 }
 
 static bool reads_pools_alone(const point_block *block, uint32_t i)
@@ -325,7 +358,7 @@ static void estimate_from_pools(const helio_pools *pools, uint32_t samples, cons
     for (uint32_t i = 0; i < block->count; i++) {
         if (!reads_pools_alone(block, i))
             continue;
-        results[i].info = (helio_estimate_info){.useful = sums[i].useful};
+        results[i] = (estimate_result){.info = {.useful = sums[i].useful}};
         for (uint32_t k = 0; k < pools->techniques; k++)
             results[i].info.samples += block->realised[k][i];
         for (int c = 0; c < 3; c++)
@@ -340,11 +373,10 @@ float estimate_control_part(bool no_control, bool has_visibility)
     return has_visibility ? 0.5f : 1.0f;
 }
 
-/* 0 where there is none. */
+/* For matte points that read a pool, if there is one. */
 static void find_control(const helio_pools *pools, const helio_shading_point *point, const helio_estimate_desc *desc,
                          const point_block *block, uint32_t i, float control[3])
 {
-    memset(control, 0, 3 * sizeof *control);
     const float part = estimate_control_part(desc->no_control, desc->visibility != NULL);
     if (pools->control == NULL || part == 0.0f || point->material.kind != HELIO_MATERIAL_DIFFUSE ||
         !reads_pools_alone(block, i))
@@ -462,6 +494,22 @@ helio_status helio_estimate_points(const helio_pools *pools, uint32_t count, con
     return HELIO_OK;
 }
 
+/* For one that weighs tiles. */
+static void find_hue_control(const gathering *g, const helio_estimate_desc *desc, float control[3])
+{
+    const kernel_set *kernels = kernels_of(context_isa(g->environment->context));
+    float hues[3] = {0};
+    sample_block block;
+    for (uint32_t first = 0; first < g->counts.realised[0]; first += BLOCK_SAMPLES) {
+        const uint32_t rest = g->counts.realised[0] - first;
+        block.count = 0;
+        memset(block.hue, 0, sizeof block.hue);
+        kernels->take_tiles(g, first, rest < BLOCK_SAMPLES ? rest : BLOCK_SAMPLES, &block);
+        add_hues(hues, &block);
+    }
+    control_hue(g, desc, hues, control);
+}
+
 static helio_status begin_checked(const helio_pools *pools, const helio_shading_point *given_point,
                                   const helio_estimate_desc *given, gathering *g, float control[3])
 {
@@ -474,7 +522,10 @@ static helio_status begin_checked(const helio_pools *pools, const helio_shading_
     HELIO_TRY(resolve_points(1, given_point, &point));
     prepare_points(pools, 1, &point, &desc, &block);
     begin(g, pools, &point, &desc, &block, 0);
+    memset(control, 0, 3 * sizeof *control);
     find_control(pools, &point, &desc, &block, 0, control);
+    if (g->has_tiles)
+        find_hue_control(g, &desc, control);
     return HELIO_OK;
 }
 

@@ -67,6 +67,7 @@ typedef struct sample_block {
     alignas(64) float green[BLOCK_STRIDE];
     alignas(64) float blue[BLOCK_STRIDE];
     alignas(64) float density[BLOCK_STRIDE]; /* sum_k m_k pdf_k over all techniques, 1/sr */
+    float hue[3];                            /* of samples of tiles: sums of listed_sample.hue */
     uint32_t listed[BLOCK_SAMPLES];          /* of samples of tiles: which of the lists' */
 } sample_block;
 

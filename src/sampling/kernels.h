@@ -18,7 +18,7 @@
 #define KERNEL(name) KERNEL_NAME(name, HELIO_ISA)
 
 struct background;
-struct control_columns;
+struct column_colours;
 struct control_matrix;
 struct exposure_columns;
 struct face_points;
@@ -29,7 +29,6 @@ struct view_group;
 struct sky_light;
 struct sky_row;
 struct texel_rows;
-struct tile_light;
 
 typedef struct kernel_set {
     /* Prefix sums of the weights of one row of texels. rgb: [size][3]. solid_angles: [size], or NULL for luminance
@@ -42,11 +41,13 @@ typedef struct kernel_set {
     uint32_t (*weigh_tiles)(const tiles *t, const normal_bin *bin, uint32_t *sums);
 
     /* Adds rows of texels to sums over their columns. */
-    void (*add_texels)(const struct texel_rows *texels, struct control_columns *sums);
+    void (*add_texels)(const struct texel_rows *texels, struct column_colours *sums);
 
     /* The known light of a bin of normals, from that of the tiles. */
-    void (*know_bin)(const tiles *t, const struct tile_light *light, const normal_bin *bin,
-                     struct control_matrix *known);
+    void (*know_bin)(const tiles *t, const normal_bin *bin, struct control_matrix *known);
+
+    /* The mean hue of the light of the tiles as a point weighs them. */
+    void (*mix_hues)(const tiles *t, point_tiles *p);
 
     /* Weighs the tiles for one point. The same bits with every instruction set. */
     void (*weigh_point)(const tiles *t, const tile_lobe *lobe, point_tiles *p);
@@ -122,9 +123,9 @@ _Static_assert(HELIO_LANES <= POOL_PADDING && BLOCK_SAMPLES % HELIO_LANES == 0 &
 
 row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, float level, uint32_t size, uint32_t *sums);
 uint32_t KERNEL(weigh_tiles)(const tiles *t, const normal_bin *bin, uint32_t *sums);
-void KERNEL(add_texels)(const struct texel_rows *texels, struct control_columns *sums);
-void KERNEL(know_bin)(const tiles *t, const struct tile_light *light, const normal_bin *bin,
-                      struct control_matrix *known);
+void KERNEL(add_texels)(const struct texel_rows *texels, struct column_colours *sums);
+void KERNEL(know_bin)(const tiles *t, const normal_bin *bin, struct control_matrix *known);
+void KERNEL(mix_hues)(const tiles *t, point_tiles *p);
 void KERNEL(weigh_point)(const tiles *t, const tile_lobe *lobe, point_tiles *p);
 void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
 void KERNEL(draw_tile)(normal_bins *bins, const helio_tables *tables, uint32_t position, uint32_t seed);

@@ -30,7 +30,8 @@ typedef struct normal_bin {
 typedef struct listed_sample {
     float direction[3], radiance[3], weighted[3]; /* weighted: radiance / density */
     float density;                                /* 1/sr, given the tile */
-    float padding[6];                             /* to a cache line */
+    float hue[3];     /* radiance / density x cosine to the tile's centre, in relation to the tile's brightness */
+    float padding[3]; /* to a cache line */
 } listed_sample;
 
 typedef struct normal_bins {

@@ -28,9 +28,11 @@ typedef struct tile_lobe {
 } tile_lobe;
 
 typedef struct point_tiles {
-    uint32_t total; /* of all weights; 0 if no light is above the horizon */
-    float share;    /* 1 / total, or 0 */
-    float left;     /* part of the light that is left to BRDF samples, 0 ... 1 */
+    uint32_t total;   /* of all weights; 0 if no light is above the horizon */
+    float share;      /* 1 / total, or 0 */
+    float brightness; /* of the light, by tiles.light: what the point is thought to get from light samples */
+    float hue[3];     /* mean over the tiles, each with its probability */
+    float left;       /* part of the light that is left to BRDF samples, 0 ... 1 */
     uint32_t group_count;
     uint8_t groups[TILE_GROUPS];              /* [group_count]: those that reach above the horizon and give light */
     uint8_t places[TILE_GROUPS];              /* [groups of the tiles]: where in these arrays, or TILE_GROUPS */

@@ -123,9 +123,31 @@ void KERNEL(weigh_point)(const tiles *t, const tile_lobe *lobe, point_tiles *p)
     const uint32_t count = p->group_count * TILE_GROUP;
     const double light = exact_sum(weights, count, t->count, p->weights, &p->total);
     const double all = exact_sum(wholes, count, t->count, integers, &unused);
+    p->brightness = (float)light;
     p->left = all > light ? (float)(1.0 - light / all) : 0.0f;
     p->share = p->total != 0 ? 1.0f / (float)p->total : 0.0f;
     sum_groups(p);
+}
+
+void KERNEL(mix_hues)(const tiles *t, point_tiles *p)
+{
+    float red = 0, green = 0, blue = 0;
+    for (uint32_t k = 0; k < p->group_count; k++) {
+        const uint32_t first = (uint32_t)p->groups[k] * TILE_GROUP;
+        const float *reds = t->colours.hue[0] + first, *greens = t->colours.hue[1] + first;
+        const float *blues = t->colours.hue[2] + first;
+        const int32_t *weights = (const int32_t *)p->weights + (size_t)k * TILE_GROUP; /* below 2^31 */
+#pragma omp simd reduction(+ : red, green, blue)
+        for (uint32_t i = 0; i < TILE_GROUP; i++) {
+            const float weight = (float)weights[i];
+            red += weight * reds[i];
+            green += weight * greens[i];
+            blue += weight * blues[i];
+        }
+    }
+    p->hue[0] = red * p->share;
+    p->hue[1] = green * p->share;
+    p->hue[2] = blue * p->share;
 }
 
 /* ---- samples ---- */
@@ -186,6 +208,8 @@ void KERNEL(take_tiles)(const gathering *g, uint32_t first, uint32_t count, samp
         block->samples[SAMPLE_GREEN][k] = sample->radiance[1];
         block->samples[SAMPLE_BLUE][k] = sample->radiance[2];
         block->listed[k] = draws.elements[i];
+        for (int c = 0; c < 3; c++)
+            block->hue[c] += sample->hue[c];
         block->samples[SAMPLE_DENSITY][k] = draws.probabilities[i] * sample->density * expected;
     }
     block->count += count;

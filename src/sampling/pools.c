@@ -169,7 +169,7 @@ helio_status helio_pools_draw(helio_pools *pools, uint32_t seed, uint32_t pass)
         work.draw = kernels->draw_bin;
         normal_bins_update(pools->bins, pools->tables);
         if (pools->frame != environment->frame)
-            control_update(pools->control, pools->bins, environment);
+            control_update(pools->control, pools->bins);
         if (pools->is_automatic && pools->frame != environment->frame)
             pools->is_even = evenness_holds(pools->bins->tiles, pools->tables);
         normal_bins_draw_lists(pools->bins, pools->tables, hash_combine(work.seed, pools->count));

@@ -162,6 +162,20 @@ static uint32_t choose_rows_of_tile(const tiles *t, uint32_t position, sample_gr
     return t->starts[column + 1] - t->starts[column];
 }
 
+static listed_sample list_sample(const tiles *t, uint32_t position, const helio_table_sample *sample)
+{
+    const vec3 centre = {t->x[position], t->y[position], t->z[position]};
+    const float towards = dot(centre, vec3_from(sample->direction)), scale = towards / t->colours.brightness[position];
+    listed_sample listed = {.density = sample->density};
+    for (int c = 0; c < 3; c++) {
+        listed.direction[c] = sample->direction[c];
+        listed.radiance[c] = sample->radiance[c];
+        listed.weighted[c] = weighted(sample->radiance[c], sample->density);
+        listed.hue[c] = listed.weighted[c] * scale;
+    }
+    return listed;
+}
+
 void KERNEL(draw_tile)(normal_bins *bins, const helio_tables *tables, uint32_t position, uint32_t seed)
 {
     const uint32_t start = bins->list_starts[position], length = bins->list_starts[position + 1] - start;
@@ -172,12 +186,7 @@ void KERNEL(draw_tile)(normal_bins *bins, const helio_tables *tables, uint32_t p
         for (uint32_t i = 0; i < group.count; i++) {
             helio_table_sample sample;
             tables_sample_at(tables, &group.places[i], tiles_density(bins->tiles, tables, &group.places[i]), &sample);
-            bins->listed[start + done + i] = (listed_sample){
-                .direction = {sample.direction[0], sample.direction[1], sample.direction[2]},
-                .radiance = {sample.radiance[0], sample.radiance[1], sample.radiance[2]},
-                .weighted = {weighted(sample.radiance[0], sample.density), weighted(sample.radiance[1], sample.density),
-                             weighted(sample.radiance[2], sample.density)},
-                .density = sample.density};
+            bins->listed[start + done + i] = list_sample(bins->tiles, position, &sample);
         }
     }
 }

@@ -8,6 +8,7 @@ const kernel_set KERNEL(kernels) = {
     .weigh_tiles = KERNEL(weigh_tiles),
     .add_texels = KERNEL(add_texels),
     .know_bin = KERNEL(know_bin),
+    .mix_hues = KERNEL(mix_hues),
     .weigh_point = KERNEL(weigh_point),
     .draw_pool = KERNEL(draw_pool),
     .draw_tile = KERNEL(draw_tile),

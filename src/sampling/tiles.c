@@ -239,4 +239,5 @@ void tiles_update(tiles *t, const helio_tables *tables)
     context_parallel_for(t->context, CUBE_FACES * (size_t)t->per_edge, sum_row_of_tiles, &work);
     find_light(t);
     find_lit_groups(t);
+    tile_colours_update(t, tables->environment);
 }

@@ -9,6 +9,7 @@
 #define HELIOSTAT_SRC_TILES_H
 
 #include "sampling/tables.h"
+#include "sampling/tile_colours.h"
 
 #include <stdalign.h>
 
@@ -34,10 +35,11 @@ typedef struct tiles {
     alignas(64) float x[TILES_MOST];     /* [count]: direction to the centre of the tile at a position */
     alignas(64) float y[TILES_MOST];
     alignas(64) float z[TILES_MOST];
-    alignas(64) float light[TILES_MOST];    /* [count]: the tables' weight, in proportion; 2^-60 to 1, or 0 */
-    row_sum totals[TILES_MOST];             /* [count]: the same exactly */
-    alignas(64) float spread[TILES_MOST];   /* [count]: angle that the light of a tile takes: its radius, or the part of
-                                               it that even light would need; small where there is a sun */
+    alignas(64) float light[TILES_MOST];  /* [count]: the tables' weight, in proportion; 2^-60 to 1, or 0 */
+    row_sum totals[TILES_MOST];           /* [count]: the same exactly */
+    alignas(64) float spread[TILES_MOST]; /* [count]: angle that the light of a tile takes: its radius, or the part of
+                                             it that even light would need; small where there is a sun */
+    tile_colours colours;
     uint32_t group_count;                   /* count / TILE_GROUP, rounded up; tiles past count are black */
     alignas(64) float group_x[TILE_GROUPS]; /* [group_count]: direction to the middle of a group */
     alignas(64) float group_y[TILE_GROUPS];

@@ -42,6 +42,7 @@ static helio_status create_buffers(vulkan_light *light)
         {&light->moments, BUFFER_ON_DEVICE, is_automatic(light) ? t->count : 0, 3 * sizeof(double),
          "the moments of tiles"},
         {&light->tile_light, BUFFER_ON_DEVICE, t->count, sizeof(control_matrix), "the known light of tiles"},
+        {&light->tile_hues, BUFFER_ON_DEVICE, t->count + 1, 4 * sizeof(float), "the hues of tiles"},
         {&light->known, BUFFER_ON_DEVICE, bins->count, sizeof(control_matrix), "the known light of bins"},
         {&light->control_sums, BUFFER_ON_DEVICE, bins->count * (light->shape->control->chunks + (uint64_t)1),
          sizeof(control_matrix), "the sums of pools"},
@@ -69,6 +70,7 @@ static void tell(vulkan_light *light)
     state->listed = light->listed.address;
     state->moments = light->moments.address;
     state->tile_light = light->tile_light.address;
+    state->tile_hues = light->tile_hues.address;
     state->known = light->known.address;
     state->control_sums = light->control_sums.address;
     state->groups = light->groups.address;

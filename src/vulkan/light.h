@@ -58,7 +58,7 @@ typedef struct vulkan_light {
     vulkan_buffer groups;
     vulkan_buffer moments; /* where the strategy may be left */
     vulkan_buffer bins, bin_sums, bin_shares, greatest, list_starts, listed;
-    vulkan_buffer tile_light, known, control_sums;
+    vulkan_buffer tile_light, tile_hues, known, control_sums;
     VkPipeline passes[LIGHT_PASSES]; /* those that the strategy needs */
 } vulkan_light;
 
