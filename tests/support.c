@@ -102,6 +102,27 @@ helio_environment *make_environment(helio_context *context, helio_layout layout,
     return environment;
 }
 
+/* ---- light ---- */
+
+light_world make_light_world(helio_context *context, const float *rgb, uint32_t size, helio_weighting weighting,
+                             const helio_pools_desc *pools)
+{
+    light_world w = {.context = context};
+    w.environment = make_environment(context, HELIO_LAYOUT_STRIP, size, 6 * size, size, rgb, NULL);
+    assert_ok(helio_tables_create(w.environment, weighting, &w.tables));
+    assert_ok(helio_tables_update(w.tables));
+    assert_ok(helio_pools_create(w.tables, pools, &w.pools));
+    assert_ok(helio_pools_draw(w.pools, 3, 1));
+    return w;
+}
+
+void destroy_light_world(light_world *w)
+{
+    helio_pools_destroy(w->pools);
+    helio_tables_destroy(w->tables);
+    helio_environment_destroy(w->environment);
+}
+
 /* ---- time ---- */
 
 bool is_thorough(void)

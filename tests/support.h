@@ -16,6 +16,7 @@
 
 #include <heliostat/core.h>
 #include <heliostat/environment.h>
+#include <heliostat/sampling.h>
 #include <heliostat/scene.h>
 
 #include <stdatomic.h>
@@ -62,6 +63,23 @@ double chi_square_tail(const double *observed, const double *expected, size_t bi
 /* An environment with a cube of size R, updated once with rgb: [height][width][3]. Fails the test if that cannot be. */
 helio_environment *make_environment(helio_context *context, helio_layout layout, uint32_t width, uint32_t height,
                                     uint32_t cube_size, const float *rgb, helio_environment_info *info);
+
+/* ---- light ---- */
+
+/* A frame's light from its map to its pools. */
+typedef struct light_world {
+    helio_context *context;
+    helio_environment *environment;
+    helio_tables *tables;
+    helio_pools *pools;
+} light_world;
+
+/* Of a strip as large as the cube: rgb: [6][size][size][3]. The pools are drawn. Fails the test if that cannot be. */
+light_world make_light_world(helio_context *context, const float *rgb, uint32_t size, helio_weighting weighting,
+                             const helio_pools_desc *pools);
+
+/* But for the context. */
+void destroy_light_world(light_world *w);
 
 /* ---- meshes ---- */
 

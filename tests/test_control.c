@@ -15,12 +15,7 @@
 
 /* ---- worlds ---- */
 
-typedef struct world {
-    helio_context *context;
-    helio_environment *environment;
-    helio_tables *tables;
-    helio_pools *pools;
-} world;
+typedef light_world world;
 
 /* A random strip as large as the cube, coloured, with a sun and some black texels. */
 static world make_world(uint32_t size, float sun, const char *isa)
@@ -30,27 +25,21 @@ static world make_world(uint32_t size, float sun, const char *isa)
     const size_t count = (size_t)18 * size * size;
     float *rgb = calloc(count, sizeof *rgb);
     uint64_t random = size;
-    world w;
+    helio_context *own;
     assert_non_null(rgb);
     for (size_t i = 0; i < count; i++)
         rgb[i] = random_bits(&random) % 8 == 0 ? 0.0f : (float)random_unit(&random) * (float)(1 + i % 3);
     for (size_t c = 0; c < 3; c++)
         rgb[count / 18 * 3 + (count / 36 / 3 * 3) + c] = sun;
-    assert_ok(helio_context_create(&context, &w.context));
-    w.environment = make_environment(w.context, HELIO_LAYOUT_STRIP, size, 6 * size, size, rgb, NULL);
+    assert_ok(helio_context_create(&context, &own));
+    world w = make_light_world(own, rgb, size, HELIO_WEIGHTING_SOLID_ANGLE, &desc);
     free(rgb);
-    assert_ok(helio_tables_create(w.environment, HELIO_WEIGHTING_SOLID_ANGLE, &w.tables));
-    assert_ok(helio_tables_update(w.tables));
-    assert_ok(helio_pools_create(w.tables, &desc, &w.pools));
-    assert_ok(helio_pools_draw(w.pools, 3, 0));
     return w;
 }
 
 static void destroy_world(world *w)
 {
-    helio_pools_destroy(w->pools);
-    helio_tables_destroy(w->tables);
-    helio_environment_destroy(w->environment);
+    destroy_light_world(w);
     helio_context_destroy(w->context);
 }
 

@@ -106,33 +106,20 @@ static void make_points(helio_shading_point points[POINTS])
     }
 }
 
-typedef struct world {
-    helio_context *context;
-    helio_environment *environment;
-    helio_tables *tables;
-    helio_pools *pools;
-} world;
+typedef light_world world;
 
 static world make_world(helio_context *context, const test_map *map, helio_weighting weighting, helio_strategy strategy,
                         uint32_t length)
 {
-    world w = {.context = context};
-    w.environment =
-        make_environment(context, HELIO_LAYOUT_STRIP, map->size, 6 * map->size, map->size, map->pixels, NULL);
-    assert_ok(helio_environment_orient(w.environment, &map->orientation));
-    assert_ok(helio_tables_create(w.environment, weighting, &w.tables));
-    assert_ok(helio_tables_update(w.tables));
     const helio_pools_desc desc = {.strategy = strategy, .length = length, .bins = BINS_PER_EDGE};
-    assert_ok(helio_pools_create(w.tables, &desc, &w.pools));
-    assert_ok(helio_pools_draw(w.pools, 0, 0));
+    world w = make_light_world(context, map->pixels, map->size, weighting, &desc);
+    assert_ok(helio_environment_orient(w.environment, &map->orientation));
     return w;
 }
 
 static void destroy_world(world *w)
 {
-    helio_pools_destroy(w->pools);
-    helio_tables_destroy(w->tables);
-    helio_environment_destroy(w->environment);
+    destroy_light_world(w);
 }
 
 /* ---- choices by chance ---- */

@@ -81,12 +81,7 @@ static void free_maps(isa_map maps[MAPS])
 
 /* ---- the pipeline with one instruction set ---- */
 
-typedef struct pipeline {
-    helio_context *context;
-    helio_environment *environment;
-    helio_tables *tables;
-    helio_pools *pools;
-} pipeline;
+typedef light_world pipeline;
 
 static void run_backwards(void *user, size_t count, helio_loop_body body, void *data)
 {
@@ -99,27 +94,20 @@ static void run_backwards(void *user, size_t count, helio_loop_body body, void *
 static pipeline make_pipeline(const char *set, uint32_t threads, const isa_map *map, helio_weighting weighting,
                               helio_strategy strategy)
 {
-    pipeline p = {0};
     const helio_context_desc desc = {
         .isa = set, .threads = threads, .parallel_for = threads == 0 ? run_backwards : NULL};
     const helio_pools_desc pools = {.strategy = strategy, .length = 512, .bins = BINS_PER_EDGE};
-    assert_ok(helio_context_create(&desc, &p.context));
-    assert_string_equal(helio_context_isa(p.context), set);
-    p.environment =
-        make_environment(p.context, HELIO_LAYOUT_STRIP, map->size, 6 * map->size, map->size, map->pixels, NULL);
+    helio_context *context;
+    assert_ok(helio_context_create(&desc, &context));
+    assert_string_equal(helio_context_isa(context), set);
+    pipeline p = make_light_world(context, map->pixels, map->size, weighting, &pools);
     assert_ok(helio_environment_orient(p.environment, &(helio_orientation){.rotate = 33, .intensity = 1.5f}));
-    assert_ok(helio_tables_create(p.environment, weighting, &p.tables));
-    assert_ok(helio_tables_update(p.tables));
-    assert_ok(helio_pools_create(p.tables, &pools, &p.pools));
-    assert_ok(helio_pools_draw(p.pools, 11, 3));
     return p;
 }
 
 static void destroy_pipeline(pipeline *p)
 {
-    helio_pools_destroy(p->pools);
-    helio_tables_destroy(p->tables);
-    helio_environment_destroy(p->environment);
+    destroy_light_world(p);
     helio_context_destroy(p->context);
 }
 

@@ -16,31 +16,18 @@
 
 /* ---- worlds ---- */
 
-typedef struct world {
-    helio_context *context;
-    helio_environment *environment;
-    helio_tables *tables;
-    helio_pools *pools;
-} world;
+typedef light_world world;
 
 /* rgb: a strip, as large as the cube. */
 static world make_world(const float *rgb, uint32_t size, uint32_t bins, uint32_t length, helio_weighting weighting)
 {
-    world w = {.context = make_context(1, NULL)};
     const helio_pools_desc desc = {.strategy = HELIO_STRATEGY_PRODUCT, .length = length, .bins = bins};
-    w.environment = make_environment(w.context, HELIO_LAYOUT_STRIP, size, 6 * size, size, rgb, NULL);
-    assert_ok(helio_tables_create(w.environment, weighting, &w.tables));
-    assert_ok(helio_tables_update(w.tables));
-    assert_ok(helio_pools_create(w.tables, &desc, &w.pools));
-    assert_ok(helio_pools_draw(w.pools, 3, 1));
-    return w;
+    return make_light_world(make_context(1, NULL), rgb, size, weighting, &desc);
 }
 
 static void destroy_world(world *w)
 {
-    helio_pools_destroy(w->pools);
-    helio_tables_destroy(w->tables);
-    helio_environment_destroy(w->environment);
+    destroy_light_world(w);
     helio_context_destroy(w->context);
 }
 

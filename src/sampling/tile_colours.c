@@ -33,6 +33,13 @@ static void lay_columns(const tiles *t, uint32_t column, tile_cells *cells)
         cells->u[i] = ((float)(cells->first_column * cells->split + i) + 0.5f) * cells->width - 1.0f;
 }
 
+static void clear_columns(uint32_t count, column_colours *sums)
+{
+    for (int c = 0; c < 3; c++)
+        for (uint32_t i = 0; i < count; i++)
+            sums->along_axis[c][i] = sums->along_right[c][i] = sums->along_down[c][i] = 0.0f;
+}
+
 /* As one row; see add_texels() for why. */
 static void add_cut_row(const colour_work *work, const tile_cells *cells, texel_rows texels, uint32_t row,
                         column_colours *sums)
@@ -88,11 +95,7 @@ static void colour_tile(void *data, size_t index)
     column_colours sums;
     tile_cells cells;
     lay_columns(t, column, &cells);
-    for (int c = 0; c < 3; c++) {
-        memset(sums.along_axis[c], 0, cells.count * sizeof(float));
-        memset(sums.along_right[c], 0, cells.count * sizeof(float));
-        memset(sums.along_down[c], 0, cells.count * sizeof(float));
-    }
+    clear_columns(cells.count, &sums);
     add_rows(work, &cells, face, t->starts[row], t->starts[row + 1], &sums);
     for (int c = 0; c < 3; c++) {
         const vec3 moment = sum_columns(&cells, &sums, face, c);
