@@ -30,7 +30,8 @@ face_place draw(uint position, uint index, uint length)
     const uint tile_row = grid / edge % edge, first_row = tile_start(tile_row);
     const uint first_column = tile_start(grid % edge), columns = tile_start(grid % edge + 1u) - first_column;
     const uint64_t stratum = (uint64_t(index) << 32) + hash_combine(dimension_seed(seed, 1u), index);
-    uint x = scrambled_sobol(index, 0u, seed), y = uint(stratum / length);
+    const uint reversed = uint((uint64_t(bitfieldReverse(index)) * length) >> 32);
+    uint x = owen_scramble_reversed(pascal_transform(reversed), dimension_seed(seed, 0u)), y = uint(stratum / length);
     const uint row = first_row + invert(STATE.tile_sums, position * STATE.tile_stride,
                                         tile_start(tile_row + 1u) - first_row, y);
     const uint texels = (face * STATE.size + row) * (STATE.size + 1u) + first_column;

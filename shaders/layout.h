@@ -28,6 +28,7 @@
 #define LAYOUT_TECHNIQUES 7 /* as in strategy.h: the last is the surface's */
 #define LAYOUT_TILES_PER_EDGE 16
 #define LAYOUT_TILE_GROUP 16 /* tiles that follow each other */
+#define LAYOUT_TILE_RUN 16   /* groups that follow each other */
 #define LAYOUT_TILES_MOST (LAYOUT_FACES * LAYOUT_TILES_PER_EDGE * LAYOUT_TILES_PER_EDGE)
 
 /* layout_state.light and .surface: strategy_light and strategy_surface. */

@@ -11,7 +11,10 @@ uint list_length(uint position, uint divisor)
 {
     const float greatest = STATE.greatest.at[position];
     precise float wanted = float(push.parameter[0]) * greatest;
-    return greatest > 0.0 ? (uint(wanted) + push.parameter[1] + divisor - 1u) / divisor : 0u;
+    uint length = push.parameter[1];
+    while (length * divisor < uint(wanted) + push.parameter[1])
+        length *= 2u;
+    return greatest > 0.0 ? length : 0u;
 }
 
 void main()

@@ -23,13 +23,28 @@ const uint LIGHT = LAYOUT_LIGHT_BINS, SURFACE = LAYOUT_SURFACE_BRDF;
 #include "rays.glsl"
 #include "samples.glsl"
 
+const uint RUNS_MOST = LAYOUT_TILES_MOST / (LAYOUT_TILE_GROUP * LAYOUT_TILE_RUN);
 const uint GROUPS_MOST = LAYOUT_TILES_MOST / LAYOUT_TILE_GROUP, NOWHERE = GROUPS_MOST;
 
 // Groups of tiles that reach above the point's horizon, in the order of the tiles; and where each group is among them, or
 // NOWHERE.
 shared uint groups[GROUPS_MOST], places[GROUPS_MOST];
+shared uint runs[RUNS_MOST + 1u]; // how many of these are before each run of groups
 shared uint sums[LAYOUT_TILES_MOST + 1]; // before each tile of these; at first the bits of the weights
 shared float parts[4u * gl_WorkGroupSize.x];
+
+uint tree_sum(uint i)
+{
+    return sums[i];
+}
+
+uint tree_run(uint run)
+{
+    return runs[run] * LAYOUT_TILE_GROUP;
+}
+
+const bool TREE_IS_EVEN = true;
+#include "tile_tree.glsl"
 
 // See tile_lobe in point_tiles.h.
 struct tile_lobe {
@@ -88,6 +103,22 @@ vec4 sum_of_group(vec4 own)
     return vec4(parts[0], parts[1], parts[2], parts[3]);
 }
 
+// Where runs begin among the chosen groups; to be read after the next barrier.
+void find_runs(uint count)
+{
+    for (uint run = gl_LocalInvocationID.x; run <= RUNS_MOST; run += gl_WorkGroupSize.x) {
+        uint low = 0u, high = count;
+        while (low < high) {
+            const uint middle = (low + high) / 2u;
+            if (groups[middle] < run * LAYOUT_TILE_RUN)
+                low = middle + 1u;
+            else
+                high = middle;
+        }
+        runs[run] = low;
+    }
+}
+
 // Returns how many groups there are, each thread having looked at some that follow each other.
 uint choose_groups(vec3 normal)
 {
@@ -106,6 +137,7 @@ uint choose_groups(vec3 normal)
             groups[places[i]] = i;
         }
     barrier();
+    find_runs(count);
     return count;
 }
 
@@ -161,35 +193,20 @@ uint weigh_tiles(brdf b, uint count, out float left, out float brightness)
 
 // ---- samples ----
 
-uint64_t part_of(uint64_t x, uint fraction)
+// Sample `index` of those that the tiles get together.
+void add_tile_sample(prepared_point p, uint index, uint total, inout vec4 sum, inout vec3 hues)
 {
-    return (x >> 32) * fraction + (((x & 0xffffffffUL) * fraction) >> 32);
-}
-
-uint find_tile(uint whole, uint count)
-{
-    uint low = 0u, high = count;
-    while (high - low > 1u) {
-        const uint middle = low + (high - low) / 2u;
-        if (sums[middle] <= whole)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
-}
-
-// A sample at a place in the sums, in 2^-20 of a unit: what is left of it in its tile counts through the tile's list.
-void add_tile_sample(prepared_point p, uint64_t place, uint count, uint total, inout vec4 sum, inout vec3 hues)
-{
-    const uint tile = find_tile(uint(place >> 20), count), weight = sums[tile + 1u] - sums[tile];
-    const uint position = position_of(tile), start = STATE.list_starts.at[position], length = STATE.list_starts.at[position + 1u] - start;
-    const double rest = double(place - (uint64_t(sums[tile]) << 20));
-    const uint element = uint(rest * double(length) / (double(weight) * 1048576.0LF));
-    const uint index = 2u * (start + min(element, length - 1u));
-    const vec4 direction = STATE.listed.at[index];
+    const uint seed = hash_combine(p.seed, LAYOUT_STREAM_WINDOW);
+    uint run;
+    tree_sample s = begin_in_run(seed, index, p.end[0], run);
+    s = descend(s, LAYOUT_TILE_GROUP, tree_random(seed, TREE_NODE_RUNS + run));
+    s = descend(s, 1u, tree_random(seed, TREE_NODE_GROUPS + groups[s.begin / LAYOUT_TILE_GROUP]));
+    const uint position = position_of(s.begin), weight = sums[s.end] - sums[s.begin];
+    const uint start = STATE.list_starts.at[position], length = STATE.list_starts.at[position + 1u] - start;
+    const uint element = 2u * (start + tree_element(s, seed, position, length));
+    const vec4 direction = STATE.listed.at[element];
     const float probability = float(weight) / float(total);
-    const vec3 light = STATE.listed.at[index + 1u].rgb;
+    const vec3 light = STATE.listed.at[element + 1u].rgb;
     hues += light * (dot(STATE.tiles.at[position].xyz, direction.xyz) / STATE.tile_hues.at[position].w);
     add_light_sample(p, direction.xyz, light / probability, probability * direction.w, p.expected[0], true, sum);
 }
@@ -222,16 +239,13 @@ vec3 control_hue(prepared_point p, uint count, uint total, float brightness, vec
     return any(isnan(control)) || any(isinf(control)) ? vec3(0.0) : control;
 }
 
-// Places of samples are at equal steps through the sums of `count` tiles, from a random start.
 vec4 light_point(prepared_point p, uint count, uint total, float brightness)
 {
     vec4 sum = vec4(0.0);
     vec3 hues = vec3(0.0);
-    const uint64_t stride = p.end[0] != 0u ? (uint64_t(total) << 20) / p.end[0] : 0UL;
-    const uint64_t start = part_of(stride, hash_combine(p.seed, LAYOUT_STREAM_WINDOW));
     origin_of_rays = read_origin(group_index());
     for (uint i = gl_LocalInvocationID.x; i < p.end[0]; i += gl_WorkGroupSize.x)
-        add_tile_sample(p, i * stride + start, count, total, sum, hues);
+        add_tile_sample(p, i, total, sum, hues);
     for (uint i = gl_LocalInvocationID.x; i < p.surface_count; i += gl_WorkGroupSize.x) {
         const surface_sample drawn = draw_surface_sample(p, i);
         if (drawn.counts)

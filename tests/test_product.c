@@ -232,10 +232,10 @@ static void densities_are_positive_for_every_normal_that_may_choose_the_bin(void
 
 /* ---- samples ---- */
 
-/* A count for every texel, from a pool that is drawn many times. */
-static void check_follows(world *w, uint32_t bin, uint32_t draws, const char *what)
+/* A count for every texel, from the first samples of a pool that is drawn many times. */
+static void check_follows(world *w, uint32_t bin, uint32_t length, uint32_t draws, const char *what)
 {
-    const uint32_t size = w->tables->size, length = w->pools->pool_length;
+    const uint32_t size = w->tables->size;
     const size_t texels = (size_t)6 * size * size;
     double *drawn = calloc(texels, sizeof *drawn), *expected = calloc(texels, sizeof *expected);
     assert_true(drawn != NULL && expected != NULL);
@@ -273,10 +273,52 @@ static void pools_follow_their_densities(void **state)
         snprintf(what, sizeof what, "R = %u", sizes[s]);
         world w = make_world(map, sizes[s], 2, 256, HELIO_WEIGHTING_SOLID_ANGLE);
         for (uint32_t bin = 0; bin < w.pools->count; bin += 7)
-            check_follows(&w, bin, 60, what);
+            check_follows(&w, bin, w.pools->pool_length, 60, what);
         destroy_world(&w);
         free(map);
     }
+}
+
+/* Any place of a pool, as points with few samples read only the first of a window. */
+static void single_places_of_pools_follow_their_densities(void **state)
+{
+    (void)state;
+    float *map = make_sky(8, 21);
+    world w = make_world(map, 8, 1, 64, HELIO_WEIGHTING_SOLID_ANGLE);
+    for (uint32_t length = 1; length <= 3; length++)
+        check_follows(&w, length, length, 1200, "first samples");
+    destroy_world(&w);
+    free(map);
+}
+
+static void count_faces(const helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t drawn[6])
+{
+    memset(drawn, 0, 6 * sizeof *drawn);
+    for (uint32_t i = first; i < first + count; i++)
+        drawn[cube_project((vec3){pools_array(pools, pool, SAMPLE_X)[i], pools_array(pools, pool, SAMPLE_Y)[i],
+                                  pools_array(pools, pool, SAMPLE_Z)[i]})
+                  .face]++;
+}
+
+/* What is shared out together is spread over its windows: each has its part of what a face got, rounded up or down. */
+static void windows_are_spread_over_faces(void **state)
+{
+    (void)state;
+    float *map = make_sky(16, 22);
+    world w = make_world(map, 16, 2, 256, HELIO_WEIGHTING_SOLID_ANGLE);
+    const uint32_t run = pools_run_of_bin(w.pools);
+    assert_int_equal(run, 64);
+    for (uint32_t pool = 0; pool < w.pools->count; pool++)
+        for (uint32_t width = 4; width < run; width *= 2)
+            for (uint32_t first = 0; first < 256; first += width) {
+                uint32_t of_run[6], of_window[6];
+                count_faces(w.pools, pool, first / run * run, run, of_run);
+                count_faces(w.pools, pool, first, width, of_window);
+                for (int face = 0; face < 6; face++)
+                    assert_true(abs((int)(of_window[face] * run) - (int)(of_run[face] * width)) < (int)run);
+            }
+    destroy_world(&w);
+    free(map);
 }
 
 /* Stored densities are those of the density function, to the bit; weighted colours are colours over densities. */
@@ -559,6 +601,8 @@ int main(void)
         cmocka_unit_test(densities_integrate_to_one),
         cmocka_unit_test(densities_are_positive_for_every_normal_that_may_choose_the_bin),
         cmocka_unit_test(pools_follow_their_densities),
+        cmocka_unit_test(single_places_of_pools_follow_their_densities),
+        cmocka_unit_test(windows_are_spread_over_faces),
         cmocka_unit_test(samples_carry_the_density_of_their_direction),
         cmocka_unit_test(no_edge_of_a_bin_shows),
         cmocka_unit_test(bins_are_cells_around_their_centres),

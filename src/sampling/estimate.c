@@ -149,7 +149,7 @@ static void begin_tiles(gathering *g, const helio_estimate_desc *desc, uint32_t 
     kernels->weigh_point(t, &lobe, &g->tiles);
     if (!desc->no_control)
         kernels->mix_hues(t, &g->tiles);
-    g->tile_random = hash_combine(seed, STREAM_WINDOW);
+    g->tile_seed = hash_combine(seed, STREAM_WINDOW);
     g->counts = (helio_counts){0};
     if (g->tiles.total == 0) /* as for a bin that is lit, but only below the horizon of this normal */
         return;

@@ -34,7 +34,7 @@ typedef struct gathering {
     /* Points that shine and whose pools are of bins read no pool: technique 0 then draws from the tiles as the point
      * itself weighs them. */
     bool has_tiles;
-    uint32_t tile_random;
+    uint32_t tile_seed;
     point_tiles tiles;
 } gathering;
 

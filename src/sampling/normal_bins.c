@@ -148,11 +148,15 @@ static size_t pieces_of_tiles(const normal_bins *b)
     return (b->tiles->count + TILES_AT_ONCE - 1) / TILES_AT_ONCE;
 }
 
-/* Several times what the pool that takes most of a tile takes from it, but shorter where all together are too long. */
+/* Several times what the pool that takes most of a tile takes from it, but shorter where all together are too long. A
+ * power of two, so that it, and with it what the list holds, mostly stays when the light changes a little. */
 static uint32_t list_length(float greatest, uint32_t pool_length, uint32_t divisor)
 {
-    uint32_t length = (uint32_t)((float)(LIST_FACTOR * pool_length) * greatest) + LIST_LEAST;
-    return greatest > 0.0f ? (length + divisor - 1) / divisor : 0;
+    const uint32_t wanted = (uint32_t)((float)(LIST_FACTOR * pool_length) * greatest) + LIST_LEAST;
+    uint32_t length = LIST_LEAST;
+    while (length * divisor < wanted)
+        length *= 2;
+    return greatest > 0.0f ? length : 0;
 }
 
 static void size_lists(normal_bins *b, const float *greatest)

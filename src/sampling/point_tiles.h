@@ -34,6 +34,7 @@ typedef struct point_tiles {
     float hue[3];     /* mean over the tiles, each with its probability */
     float left;       /* part of the light that is left to BRDF samples, 0 ... 1 */
     uint32_t group_count;
+    uint8_t runs[TILE_RUNS + 1];              /* where the groups of each run begin, and the end of all */
     uint8_t groups[TILE_GROUPS];              /* [group_count]: those that reach above the horizon and give light */
     uint8_t places[TILE_GROUPS];              /* [groups of the tiles]: where in these arrays, or TILE_GROUPS */
     uint32_t sums[TILE_GROUPS + 1];           /* [group_count + 1]: prefix sums over groups */

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * A shiny point's own density over the tiles, and samples from it. */
-#include "core/random.h"
 #include "sampling/fixed_point.h"
 #include "sampling/kernels.h"
+#include "sampling/tile_tree.h"
 
 /* ---- weights ---- */
 
@@ -16,12 +16,13 @@ static void choose_groups(const tiles *t, vec3 normal, point_tiles *p)
         float cosine = normal.x * t->group_x[i] + normal.y * t->group_y[i] + normal.z * t->group_z[i];
         is_above[i] = cosine > -t->group_edge[i];
     }
-    p->group_count = 0;
-    for (uint32_t i = 0; i < t->group_count; i++) {
+    p->group_count = p->runs[0] = 0;
+    for (uint32_t i = 0; i < TILE_GROUPS; i++) {
         const bool is_taken = is_above[i] && t->group_is_lit[i];
         p->groups[p->group_count] = (uint8_t)i; /* overwritten by the next where it is not taken */
         p->places[i] = (uint8_t)(is_taken ? p->group_count : TILE_GROUPS);
         p->group_count += is_taken;
+        p->runs[i / TILE_RUN + 1] = (uint8_t)p->group_count;
     }
 }
 
@@ -152,65 +153,34 @@ void KERNEL(mix_hues)(const tiles *t, point_tiles *p)
 
 /* ---- samples ---- */
 
-/* Samples on their way: the tile that each falls into, and which of its listed samples it is. */
-typedef struct tile_draws {
-    uint32_t elements[BLOCK_SAMPLES];
-    float probabilities[BLOCK_SAMPLES];
-} tile_draws;
-
-static inline uint64_t part_of(uint64_t x, uint32_t fraction)
-{
-    return (x >> 32) * fraction + (((x & UINT32_MAX) * fraction) >> 32);
-}
-
-/* Places at equal steps through the sums, from a random start; what is left of a place in its tile counts through the
- * tile's list. In 2^-20 of a unit of weight, for the steps: sums are below 2^31. */
 static void choose_tiles(const normal_bins *bins, const point_tiles *p, uint32_t samples, uint32_t first,
-                         uint32_t count, uint32_t random, tile_draws *draws)
+                         uint32_t count, uint32_t seed, tile_draw *draws)
 {
-    const uint64_t step = ((uint64_t)p->total << 20) / samples;
-    uint64_t place = first * step + part_of(step, random);
-    uint32_t k = 0, i = 0, sum = 0;
-    for (uint32_t n = 0; n < count; n++, place += step) {
-        const uint32_t whole = (uint32_t)(place >> 20);
-        if (p->sums[k + 1] <= whole) {
-            do
-                k++;
-            while (p->sums[k + 1] <= whole);
-            i = 0;
-            sum = p->sums[k];
-        }
-        const uint32_t *weights = p->weights + (size_t)k * TILE_GROUP;
-        while (sum + weights[i] <= whole)
-            sum += weights[i++];
-        const uint32_t position = p->groups[k] * (uint32_t)TILE_GROUP + i, start = bins->list_starts[position];
-        const uint32_t length = bins->list_starts[position + 1] - start;
-        const uint64_t rest = place - ((uint64_t)sum << 20);
-        uint32_t element = (uint32_t)((double)rest * (double)length / ((double)weights[i] * 0x1p20));
-        draws->elements[n] = start + (element < length ? element : length - 1);
-        draws->probabilities[n] = (float)weights[i] * p->share;
-        __builtin_prefetch(&bins->listed[draws->elements[n]]);
-    }
+    const tile_tree tree = {p->runs, p->groups, p->sums, p->weights, bins->list_starts};
+    tile_tree_draw(&tree, true, samples, first, count, seed, draws);
+    for (uint32_t i = 0; i < count; i++)
+        __builtin_prefetch(&bins->listed[draws[i].element]);
 }
 
 void KERNEL(take_tiles)(const gathering *g, uint32_t first, uint32_t count, sample_block *block)
 {
     const normal_bins *bins = g->pools->bins;
     const float expected = g->counts.expected[0];
-    tile_draws draws;
-    choose_tiles(bins, &g->tiles, g->counts.realised[0], first, count, g->tile_random, &draws);
+    const float share = g->tiles.share;
+    tile_draw draws[BLOCK_SAMPLES];
+    choose_tiles(bins, &g->tiles, g->counts.realised[0], first, count, g->tile_seed, draws);
     for (uint32_t i = 0, k = block->count; i < count; i++, k++) {
-        const listed_sample *sample = &bins->listed[draws.elements[i]];
+        const listed_sample *sample = &bins->listed[draws[i].element];
         block->samples[SAMPLE_X][k] = sample->direction[0];
         block->samples[SAMPLE_Y][k] = sample->direction[1];
         block->samples[SAMPLE_Z][k] = sample->direction[2];
         block->samples[SAMPLE_RED][k] = sample->radiance[0];
         block->samples[SAMPLE_GREEN][k] = sample->radiance[1];
         block->samples[SAMPLE_BLUE][k] = sample->radiance[2];
-        block->listed[k] = draws.elements[i];
+        block->listed[k] = draws[i].element;
         for (int c = 0; c < 3; c++)
             block->hue[c] += sample->hue[c];
-        block->samples[SAMPLE_DENSITY][k] = draws.probabilities[i] * sample->density * expected;
+        block->samples[SAMPLE_DENSITY][k] = (float)draws[i].weight * share * sample->density * expected;
     }
     block->count += count;
 }

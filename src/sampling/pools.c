@@ -9,7 +9,13 @@
 
 #include <string.h>
 
-enum { DEFAULT_LENGTH = 1024, DEFAULT_LENGTH_OF_BIN = 256, LEAST_LENGTH = 64, GREATEST_LENGTH = 65536, PIECE = 256 };
+enum {
+    DEFAULT_LENGTH = 1024,
+    DEFAULT_LENGTH_OF_BIN = 256,
+    LEAST_LENGTH = 64,
+    GREATEST_LENGTH = 65536,
+    PIECE = POOL_RUN_MOST
+};
 
 static helio_status resolve_desc(const helio_pools_desc *given, helio_pools_desc *desc)
 {

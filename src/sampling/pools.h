@@ -12,6 +12,7 @@
 enum {
     POOL_SHARE = 8, /* a point takes at most one eighth of a pool, so that its neighbours have windows of their own */
     POOL_SHARE_OF_BIN = 4, /* ... one fourth of the pool of a bin, as its neighbours mostly read other pools as well */
+    POOL_RUN_MOST = 256,   /* samples of the pool of a bin that are drawn together */
     POOL_PADDING = 16      /* floats that a kernel may read past the end: the lanes of the widest register */
 };
 
@@ -69,6 +70,14 @@ static inline float pools_density(const helio_pools *pools, uint32_t pool, const
     float density = face_table_density(&table, at->row, at->column, at->u, at->v);
     return pools->parts.light == STRATEGY_LIGHT_WHOLE ? density * tables_face_probability(pools->tables, at->face)
                                                       : density;
+}
+
+/* Samples of a bin's pool that are shared out to tiles together: as many as the widest window has, if that is not too
+ * many. */
+static inline uint32_t pools_run_of_bin(const helio_pools *pools)
+{
+    const uint32_t widest = pools->pool_length / POOL_SHARE_OF_BIN;
+    return widest < POOL_RUN_MOST ? widest : POOL_RUN_MOST;
 }
 
 /* First sample of the window from which a point reads `wanted` samples, at least 1: windows are aligned to powers of

@@ -4,6 +4,7 @@
  * step of each after the other, so that they wait for memory together. */
 #include "core/random.h"
 #include "sampling/kernels.h"
+#include "sampling/tile_tree.h"
 
 #include <float.h>
 
@@ -136,13 +137,15 @@ void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32
 
 /* ---- samples of tiles, and pools of bins made of them ---- */
 
-/* Points first ... of `length`: one in each of that many strata of y, in their order. */
+/* Points first ... of `length`, a power of two: one in each of that many strata of y, in their order. Together they are
+ * a (0,2)-net, and those at equal steps have columns as far apart as rows. */
 static void choose_strata(uint32_t first, uint32_t length, uint32_t seed, sample_group *group)
 {
     const uint32_t seed_x = dimension_seed(seed, 0), seed_y = dimension_seed(seed, 1);
     for (uint32_t i = 0; i < group->count; i++) {
-        group->column.fraction[i] = owen_scramble_reversed(first + i, seed_x);
-        uint64_t y = ((uint64_t)(first + i) << 32) + hash_combine(seed_y, first + i);
+        const uint32_t index = (uint32_t)(((uint64_t)reverse_bits(first + i) * length) >> 32);
+        group->column.fraction[i] = owen_scramble_reversed(pascal_transform(index), seed_x);
+        const uint64_t y = ((uint64_t)(first + i) << 32) + hash_combine(seed_y, first + i);
         group->row.fraction[i] = (uint32_t)(y / length);
     }
 }
@@ -210,51 +213,29 @@ static void store_listed(helio_pools *pools, uint32_t pool, uint32_t index, cons
     to[SAMPLE_WEIGHTED_BLUE * pools->stride] = finite_product(sample->weighted[2], scale);
 }
 
-/* Samples of a bin on their way to the lists. */
-typedef struct bin_group {
-    double place[GROUP]; /* in the bin's sums */
-    int32_t position[GROUP], element[GROUP];
-} bin_group;
+/* The tree of all tiles as a bin weighs them. */
+typedef struct bin_tree {
+    uint8_t runs[TILE_RUNS + 1], groups[TILE_GROUPS];
+    uint32_t sums[TILE_GROUPS + 1];
+    alignas(64) uint32_t weights[TILES_MOST];
+} bin_tree;
 
-/* As invert_group(), but all in the same sums, which are below 2^31: a search for each lane. */
-static void find_tiles(const uint32_t *sums, int32_t length, bin_group *group)
+static void make_bin_tree(const normal_bins *bins, uint32_t bin, bin_tree *tree)
 {
-    const int32_t *signed_sums = (const int32_t *)sums;
-    int32_t highest = 1;
-    while (highest < length)
-        highest *= 2;
-    for (int32_t i = 0; i < GROUP; i++)
-        group->position[i] = 0;
-    for (int32_t step = highest / 2; step > 0; step /= 2)
+    const uint32_t *sums = normal_bins_sums(bins, bin), count = bins->tiles->count;
+    const uint32_t group_count = bins->tiles->group_count;
 #pragma omp simd
-        for (int32_t i = 0; i < GROUP; i++) {
-            int32_t next = group->position[i] + step;
-            next = next < length ? next : length;
-            group->position[i] += signed_sums[next] <= (int32_t)group->place[i] ? step : 0;
-        }
-}
-
-/* Points first ... of a bin's pool, and the listed sample that each picks: what is left of the point in its tile counts
- * through the list. In double, which holds these sums with 22 bits to spare. */
-static void choose_listed(const normal_bins *bins, uint32_t bin, uint32_t first, uint32_t seed_x, bin_group *group)
-{
-    const uint32_t *sums = normal_bins_sums(bins, bin), *starts = bins->list_starts;
-    const double scale = (double)sums[bins->tiles->count] * 0x1p-31;
-#pragma omp simd
-    for (int32_t i = 0; i < GROUP; i++) {
-        uint32_t x = owen_scramble_reversed(first + (uint32_t)i, seed_x);
-        group->place[i] = (double)(int32_t)(x >> 1) * scale;
+    for (uint32_t i = 0; i < count; i++)
+        tree->weights[i] = sums[i + 1] - sums[i];
+    for (uint32_t i = count; i < group_count * TILE_GROUP; i++)
+        tree->weights[i] = 0;
+    for (uint32_t i = 0; i < group_count; i++) {
+        tree->groups[i] = (uint8_t)i;
+        tree->sums[i] = sums[i * TILE_GROUP];
     }
-    find_tiles(sums, (int32_t)bins->tiles->count, group);
-    for (int32_t i = 0; i < GROUP; i++) {
-        const int32_t position = group->position[i];
-        const uint32_t length = starts[position + 1] - starts[position];
-        const double within =
-            (group->place[i] - (double)sums[position]) / (double)(sums[position + 1] - sums[position]);
-        const uint32_t element = (uint32_t)(int32_t)(within * (double)length);
-        group->element[i] = (int32_t)(starts[position] + (element < length ? element : length - 1));
-        __builtin_prefetch(&bins->listed[group->element[i]]);
-    }
+    tree->sums[group_count] = sums[count];
+    for (uint32_t run = 0; run <= TILE_RUNS; run++)
+        tree->runs[run] = (uint8_t)(run * TILE_RUN < group_count ? run * TILE_RUN : group_count);
 }
 
 /* Adds what a sample stands for, see control.h, to its chunk's sum. */
@@ -277,22 +258,36 @@ static void add_known(const helio_pools *pools, const normal_bin *bin, uint32_t 
             sum->rows[row][c] += factors[row] * light[c];
 }
 
+/* Samples of a run lie in the order of their numbers with the bits reversed, and some of them flipped at random: so
+ * each aligned window of a power of two has one of each of that many parts of the run, and any place holds each of the
+ * samples with the same probability. */
+static void store_run(helio_pools *pools, uint32_t bin, uint32_t first, uint32_t count, uint32_t flipped,
+                      const tile_draw *draws)
+{
+    const normal_bins *bins = pools->bins;
+    control_matrix *chunks = control_chunks(pools->control, bin);
+    memset(chunks + first / CONTROL_CHUNK, 0, count / CONTROL_CHUNK * sizeof *chunks);
+    for (uint32_t i = 0; i < count; i++) {
+        const tile_draw *draw = &draws[(uint32_t)(((uint64_t)(reverse_bits(i) ^ flipped) * count) >> 32)];
+        store_listed(pools, bin, first + i, &bins->listed[draw->element], (float)draw->weight * bins->shares[bin]);
+        add_known(pools, &bins->bins[bin], bin * pools->pool_length + first + i, draw->position, chunks);
+    }
+}
+
 void KERNEL(draw_bin)(helio_pools *pools, uint32_t bin, uint32_t first, uint32_t count, uint32_t seed)
 {
     const normal_bins *bins = pools->bins;
-    const uint32_t seed_x = dimension_seed(seed, 0);
-    control_matrix *chunks = control_chunks(pools->control, bin);
-    for (uint32_t done = 0; done < count; done += GROUP) {
-        const uint32_t some = count - done < GROUP ? count - done : GROUP;
-        bin_group group;
-        choose_listed(bins, bin, first + done, seed_x, &group);
-        memset(chunks + (first + done) / CONTROL_CHUNK, 0, some / CONTROL_CHUNK * sizeof *chunks);
-        for (uint32_t i = 0; i < some; i++) {
-            store_listed(pools, bin, first + done + i, &bins->listed[group.element[i]],
-                         normal_bins_probability(bins, bin, (uint32_t)group.position[i]));
-            add_known(pools, &bins->bins[bin], bin * pools->pool_length + first + done + i, (uint32_t)group.position[i],
-                      chunks);
-        }
+    const uint32_t run = pools_run_of_bin(pools);
+    bin_tree own;
+    tile_draw draws[POOL_RUN_MOST];
+    make_bin_tree(bins, bin, &own);
+    const tile_tree tree = {own.runs, own.groups, own.sums, own.weights, bins->list_starts};
+    for (uint32_t done = 0; done < count; done += run) {
+        const uint32_t seed_of_run = hash_combine(seed, (first + done) / run);
+        tile_tree_draw(&tree, false, run, 0, run, seed_of_run, draws);
+        for (uint32_t i = 0; i < run; i++)
+            __builtin_prefetch(&bins->listed[draws[i].element]);
+        store_run(pools, bin, first + done, run, tile_tree_random(seed_of_run, TILE_TREE_ORDER), draws);
     }
 }
 

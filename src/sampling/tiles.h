@@ -18,6 +18,8 @@ enum {
     TILES_MOST = CUBE_FACES * TILES_PER_EDGE * TILES_PER_EDGE,
     TILE_GROUP = 16, /* tiles that follow each other in the order, and so are neighbours: 4 x 4 where T is 16 */
     TILE_GROUPS = TILES_MOST / TILE_GROUP,
+    TILE_RUN = 16, /* groups that follow each other: a face where T is 16 */
+    TILE_RUNS = TILE_GROUPS / TILE_RUN,
 };
 
 typedef struct tiles {

@@ -9,7 +9,9 @@ enum { THREADS = 64, THREADS_OF_TILE = 32 };
 _Static_assert(sizeof(control_matrix) == LAYOUT_CONTROL_ROWS * 4 * sizeof(float) &&
                    (int)LAYOUT_CONTROL_CHUNK == (int)CONTROL_CHUNK,
                "as in control.h");
-_Static_assert((int)LAYOUT_TILE_GROUP == (int)TILE_GROUP && (int)LAYOUT_TILES_MOST == (int)TILES_MOST, "as in tiles.h");
+_Static_assert((int)LAYOUT_TILE_GROUP == (int)TILE_GROUP && (int)LAYOUT_TILE_RUN == (int)TILE_RUN &&
+                   (int)LAYOUT_TILES_MOST == (int)TILES_MOST,
+               "as in tiles.h");
 
 /* ---- creation ----------------------------------------------------------------------------- */
 
@@ -202,11 +204,12 @@ static void record_weights(vulkan_light *light, vulkan_commands *commands)
 void light_record_bins(vulkan_light *light, vulkan_commands *commands, uint64_t step, bool is_first_pass)
 {
     const struct layout_push push = light_push(light, step, 0);
+    const struct layout_push draw = light_push(light, step, pools_run_of_bin(light->shape));
     if (is_first_pass)
         record_weights(light, commands);
     commands_dispatch(commands, light->passes[PASS_DRAW_LISTS], &push, groups(light->state.list_capacity));
     commands_barrier(commands);
-    commands_dispatch(commands, light->passes[PASS_DRAW_BINS], &push, groups(light->state.pool_stride));
+    commands_dispatch(commands, light->passes[PASS_DRAW_BINS], &draw, groups(light->state.pool_stride));
     commands_barrier(commands);
     commands_dispatch(commands, light->passes[PASS_CONTROL_SUMS], &push, light->state.bin_count);
 }
