@@ -93,7 +93,8 @@ static inline uint32_t tile_steps_take(tile_steps *steps, uint32_t sum)
 {
     const uint32_t left = steps->left;
     if (left > TILE_STEPS_FEW) {
-        const uint64_t below = ((((uint64_t)sum << 32) - 1) - steps->place) / steps->step + 1;
+        const uint64_t step = steps->step > 0 ? steps->step : 1; /* as it is: no sum of weights is 0 */
+        const uint64_t below = ((((uint64_t)sum << 32) - 1) - steps->place) / step + 1;
         const uint32_t count = below < left ? (uint32_t)below : left;
         steps->place += count * steps->step;
         steps->left -= count;
