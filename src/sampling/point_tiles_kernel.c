@@ -167,7 +167,7 @@ void KERNEL(take_tiles)(const gathering *g, uint32_t first, uint32_t count, samp
     const normal_bins *bins = g->pools->bins;
     const float expected = g->counts.expected[0];
     const float share = g->tiles.share;
-    tile_draw draws[BLOCK_SAMPLES];
+    tile_draw draws[BLOCK_SAMPLES] = {{0}}; /* so that analyzers need not follow the tree */
     choose_tiles(bins, &g->tiles, g->counts.realised[0], first, count, g->tile_seed, draws);
     for (uint32_t i = 0, k = block->count; i < count; i++, k++) {
         const listed_sample *sample = &bins->listed[draws[i].element];

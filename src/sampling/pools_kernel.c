@@ -279,7 +279,7 @@ void KERNEL(draw_bin)(helio_pools *pools, uint32_t bin, uint32_t first, uint32_t
     const normal_bins *bins = pools->bins;
     const uint32_t run = pools_run_of_bin(pools);
     bin_tree own;
-    tile_draw draws[POOL_RUN_MOST];
+    tile_draw draws[POOL_RUN_MOST] = {{0}}; /* so that analyzers need not follow the tree */
     make_bin_tree(bins, bin, &own);
     const tile_tree tree = {own.runs, own.groups, own.sums, own.weights, bins->list_starts};
     for (uint32_t done = 0; done < count; done += run) {
