@@ -10,6 +10,7 @@ SECONDS = 60
 TARGET =
 LINT =
 SAN_TESTS =
+CORE_TESTS =
 JOBS := $(shell nproc 2>/dev/null || echo 2)
 
 # Every test program prints the name of each of its tests, so show what they print.
@@ -91,7 +92,7 @@ fuzz: dependencies-ci build-fuzz/build.ninja
 # Only the sampling core: libm and threads, no other library.
 core: dependencies-test build-core/build.ninja
 	@cmake --build build-core
-	@cd build-core && $(CTEST) --label-exclude long
+	@cd build-core && $(CTEST) --label-exclude long $(if $(CORE_TESTS),--tests-regex '$(call tests_regex,$(CORE_TESTS))')
 
 format: dependencies-ci
 	@scripts/format.sh
