@@ -73,7 +73,7 @@ test-long: build-with-tests
 	@cd $(BUILD) && $(CTEST) --label-regex long
 
 san: dependencies-test build-asan/build.ninja
-	@cmake --build build-asan $(if $(SAN_TESTS),--target heliostat_program $(SAN_TESTS:%=test_%))
+	@cmake --build build-asan $(if $(SAN_TESTS),--target $(SAN_TESTS:%=test_%) $(if $(filter cli,$(SAN_TESTS)),heliostat_program))
 	@cd build-asan && $(CTEST) --label-exclude long $(if $(SAN_TESTS),--tests-regex '$(call tests_regex,$(SAN_TESTS))')
 
 # What shares data between threads, and by test_frame and test_cli whole pictures: test_render would take ten times as
