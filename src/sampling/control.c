@@ -69,10 +69,9 @@ void control_sum_pools(light_control *c)
     context_parallel_for(c->context, c->bins, sum_pool, c);
 }
 
-/* Sums of light next to the greatest of floats are infinite, and say nothing. */
-static float finite_or_nothing(float x)
+float control_finite(float x)
 {
-    return x - x == 0.0f ? x : 0.0f;
+    return isfinite(x) ? x : 0.0f;
 }
 
 vec3 control_difference(const light_control *c, uint32_t bin, uint32_t first, uint32_t count, vec3 normal)
@@ -88,5 +87,5 @@ vec3 control_difference(const light_control *c, uint32_t bin, uint32_t first, ui
     for (int row = 0; row < 4; row++)
         for (int i = 0; i < 4; i++)
             sum[i] += n[row] * (known->rows[row][i] - factor * (end->rows[row][i] - start->rows[row][i]));
-    return (vec3){finite_or_nothing(sum[0]), finite_or_nothing(sum[1]), finite_or_nothing(sum[2])};
+    return (vec3){control_finite(sum[0]), control_finite(sum[1]), control_finite(sum[2])};
 }

@@ -47,6 +47,9 @@ void control_sum_pools(light_control *c);
  * of the chunk. */
 vec3 control_difference(const light_control *c, uint32_t bin, uint32_t first, uint32_t count, vec3 normal);
 
+/* x, or 0: sums of light next to the greatest of floats are infinite, and say nothing. */
+float control_finite(float x);
+
 /* a and c for a bin and a tile whose centres' cosine is given: least squares over the cosines that normals and
  * directions mostly have, about as many each within half of what they can be apart. */
 typedef struct control_line {

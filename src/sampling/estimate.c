@@ -217,11 +217,16 @@ static void take_light(const gathering *g, const kernel_set *kernels, sample_cur
     kernels->take_pools(g, pieces, piece_count, block);
 }
 
-/* The next samples, as many as fit, and what each contributes; false if there are none left. */
-static bool next_block(const gathering *g, const kernel_set *kernels, sample_cursor *cursor, sample_block *block)
+static void empty_block(sample_block *block)
 {
     block->count = 0;
     memset(block->hue, 0, sizeof block->hue);
+}
+
+/* The next samples, as many as fit, and what each contributes; false if there are none left. */
+static bool next_block(const gathering *g, const kernel_set *kernels, sample_cursor *cursor, sample_block *block)
+{
+    empty_block(block);
     take_light(g, kernels, cursor, block);
     if (cursor->technique == TECHNIQUE_SURFACE && block->count < BLOCK_SAMPLES) {
         uint32_t first = cursor->taken, count = take_some(g, BLOCK_SAMPLES - block->count, cursor);
@@ -279,16 +284,10 @@ static uint32_t cast_shadows(const gathering *g, const helio_shading_point *poin
     return rays.count;
 }
 
-static void add_hues(float sums[3], const sample_block *block)
+static void add_to(float sums[3], const float more[3])
 {
     for (int c = 0; c < 3; c++)
-        sums[c] += block->hue[c];
-}
-
-static void add_sum(float rgb[3], const block_sum *sum)
-{
-    for (int c = 0; c < 3; c++)
-        rgb[c] += sum->rgb[c];
+        sums[c] += more[c];
 }
 
 /* What is known of the light of a point that weighs tiles: its mean hue, of which its samples' mean differs by chance.
@@ -304,10 +303,8 @@ static void control_hue(const gathering *g, const helio_estimate_desc *desc, con
     const float share = g->counts.expected[0] / (float)desc->samples;
     const float brightness = g->tiles.brightness * g->pools->bins->tiles->colours.per_light / luminance(colour);
     const float factor = part * share * share * brightness * g->environment->intensity;
-    for (int c = 0; c < 3; c++) {
-        const float difference = factor * colour[c] * (g->tiles.hue[c] - hues[c] / samples);
-        control[c] = isfinite(difference) ? difference : 0.0f;
-    }
+    for (int c = 0; c < 3; c++)
+        control[c] = control_finite(factor * colour[c] * (g->tiles.hue[c] - hues[c] / samples));
 }
 
 static void estimate_by_blocks(const gathering *g, const kernel_set *kernels, const helio_shading_point *point,
@@ -320,13 +317,13 @@ static void estimate_by_blocks(const gathering *g, const kernel_set *kernels, co
         block_sum sum = kernels->sum_block(&block);
         result->info.samples += block.count;
         result->info.useful += sum.useful;
-        add_sum(result->unoccluded, &sum);
-        add_hues(hues, &block);
+        add_to(result->unoccluded, sum.rgb);
+        add_to(hues, block.hue);
         if (desc->visibility != NULL && sum.useful > 0) {
             result->info.rays += cast_shadows(g, point, desc, &block);
             sum = kernels->sum_block(&block); /* in the same order: what nothing shadows stays the same number */
         }
-        add_sum(result->visible, &sum);
+        add_to(result->visible, sum.rgb);
     }
     if (g->has_tiles)
         control_hue(g, desc, hues, result->control);
@@ -502,14 +499,14 @@ static void find_hue_control(const gathering *g, const helio_estimate_desc *desc
     sample_block block;
     for (uint32_t first = 0; first < g->counts.realised[0]; first += BLOCK_SAMPLES) {
         const uint32_t rest = g->counts.realised[0] - first;
-        block.count = 0;
-        memset(block.hue, 0, sizeof block.hue);
+        empty_block(&block);
         kernels->take_tiles(g, first, rest < BLOCK_SAMPLES ? rest : BLOCK_SAMPLES, &block);
-        add_hues(hues, &block);
+        add_to(hues, block.hue);
     }
     control_hue(g, desc, hues, control);
 }
 
+/* control: NULL where nobody wants it, as that of a point that weighs tiles takes its samples once more. */
 static helio_status begin_checked(const helio_pools *pools, const helio_shading_point *given_point,
                                   const helio_estimate_desc *given, gathering *g, float control[3])
 {
@@ -522,6 +519,8 @@ static helio_status begin_checked(const helio_pools *pools, const helio_shading_
     HELIO_TRY(resolve_points(1, given_point, &point));
     prepare_points(pools, 1, &point, &desc, &block);
     begin(g, pools, &point, &desc, &block, 0);
+    if (control == NULL)
+        return HELIO_OK;
     memset(control, 0, 3 * sizeof *control);
     find_control(pools, &point, &desc, &block, 0, control);
     if (g->has_tiles)
@@ -587,11 +586,10 @@ helio_status helio_gather(const helio_pools *pools, const helio_shading_point *p
 {
     gathering g;
     sample_block block;
-    float control[3];
     uint32_t taken = 0, technique = 0, start = 0, end = 0; /* of the samples of technique - 1 */
     if (samples == NULL || count == NULL)
         return fail(HELIO_ERR_ARGUMENT, "helio_gather needs places for samples and their count");
-    HELIO_TRY(begin_checked(pools, point, desc, &g, control));
+    HELIO_TRY(begin_checked(pools, point, desc, &g, NULL));
     const kernel_set *kernels = kernels_of(context_isa(g.environment->context));
     for (sample_cursor cursor = {0}; next_block(&g, kernels, &cursor, &block);)
         for (uint32_t i = 0; i < block.count; i++, taken++) {

@@ -174,10 +174,10 @@ helio_status helio_pools_draw(helio_pools *pools, uint32_t seed, uint32_t pass)
     if (pools->bins != NULL) {
         work.draw = kernels->draw_bin;
         normal_bins_update(pools->bins, pools->tables);
-        if (pools->frame != environment->frame)
+        if (pools->frame != environment->frame) {
             control_update(pools->control, pools->bins);
-        if (pools->is_automatic && pools->frame != environment->frame)
-            pools->is_even = evenness_holds(pools->bins->tiles, pools->tables);
+            pools->is_even = pools->is_automatic && evenness_holds(pools->bins->tiles, pools->tables);
+        }
         normal_bins_draw_lists(pools->bins, pools->tables, hash_combine(work.seed, pools->count));
     }
     context_parallel_for(environment->context, (size_t)pools->count * pieces_per_pool(pools), draw_piece, &work);
