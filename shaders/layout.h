@@ -277,7 +277,8 @@ struct layout_state {
     ADDRESS(vectors, tile_hues);    /* [tiles + 1]: hue and brightness; at the end brightness per light */
     ADDRESS(vectors, known);        /* [bins][LAYOUT_CONTROL_ROWS] */
     ADDRESS(vectors, control_sums); /* [bins][chunks + 1][LAYOUT_CONTROL_ROWS] */
-    ADDRESS(vectors, groups);  /* [tiles / LAYOUT_TILE_GROUP]: direction to the middle, edge, see tiles.h */
+    ADDRESS(vectors, groups);  /* [tiles / LAYOUT_TILE_GROUP][3], see tile_groups.h: direction to the middle, edge;
+                                  mean direction of the light, light; variance, spread */
     UINT size;                     /* R */
     UINT weighting;                /* helio_weighting */
     UINT light, surface;           /* parts of the strategy */

@@ -30,7 +30,12 @@ const uint GROUPS_MOST = LAYOUT_TILES_MOST / LAYOUT_TILE_GROUP, NOWHERE = GROUPS
 // NOWHERE.
 shared uint groups[GROUPS_MOST], places[GROUPS_MOST];
 shared uint runs[RUNS_MOST + 1u]; // how many of these are before each run of groups
-shared uint sums[LAYOUT_TILES_MOST + 1]; // before each tile of these; at first the bits of the weights
+// Of all groups: the specular lobe that stands for their tiles, or -1 where each has its own; and how much more light
+// there would be if BRDF samples looked after nothing.
+shared float lobes[GROUPS_MOST], gains[GROUPS_MOST];
+// Before each tile of the chosen groups; at first the bits of the weights, and before that what the specular lobe has of
+// each group.
+shared uint sums[LAYOUT_TILES_MOST + 1];
 shared float parts[4u * gl_WorkGroupSize.x];
 
 uint tree_sum(uint i)
@@ -46,44 +51,48 @@ uint tree_run(uint run)
 const bool TREE_IS_EVEN = true;
 #include "tile_tree.glsl"
 
+// A group of which the specular lobe has more than this part of all light has its tiles weighed by themselves.
+const float REFINED_PART = 1.0 / 256.0;
+
 // See tile_lobe in point_tiles.h.
 struct tile_lobe {
-    float diffuse, specular, sharpness, narrowness, alpha, to_surface;
+    float diffuse, specular, width, alpha, to_surface;
 };
 
 tile_lobe prepare_lobe(brdf b)
 {
     const float edge2 = STATE.tile_edge * STATE.tile_edge;
-    tile_lobe lobe = tile_lobe(luminance(b.colours[0]), luminance(b.colours[1]), 0.0, 0.0, 0.0, to_surface(b));
+    tile_lobe lobe = tile_lobe(luminance(b.colours[0]), luminance(b.colours[1]), 0.0, 0.0, to_surface(b));
     if (is_ggx(b.kind)) {
-        const float widened = b.shape + edge2;
         lobe.alpha = sqrt(b.shape);
-        lobe.narrowness = 1.0 - min(widened, 0.999);
+        lobe.width = b.shape + edge2;
         lobe.specular += luminance(b.colours[2]) * schlick_weight(b.view_cosine);
-        lobe.specular *= widened * INVERSE_PI;
+        lobe.specular *= INVERSE_PI;
     } else {
-        const float widened = 1.0 / (1.0 / max(b.shape, 1e-3) + 0.3 * edge2);
-        lobe.sharpness = 1.44269504 * widened;
-        lobe.specular *= (widened + 2.0) / (b.shape + 2.0);
+        lobe.width = 1.0 / max(b.shape, 1e-3) + 0.3 * edge2;
+        lobe.specular /= b.shape + 2.0;
     }
     return lobe;
 }
 
-// BRDF x cosine for the centre of a tile: of what BRDF samples leave, and of all. x: what they look after is x / (1 + x)
-// of the specular lobe.
-vec2 lobe_at(brdf b, tile_lobe lobe, vec3 direction, float x)
+float soft_cosine(float cosine, float edge)
 {
-    const float cosine = dot(b.normal, direction), edge = STATE.tile_edge, risen = max(cosine + edge, 0.0);
-    const float soft = cosine < edge ? risen * risen / (4.0 * edge) : cosine, along = dot(b.view, direction);
+    const float risen = max(cosine + edge, 0.0);
+    return cosine < edge ? risen * risen / (4.0 * edge) : cosine;
+}
+
+// The specular lobe, of this width. cosine: between normal and direction; soft: the same, softened.
+float specular_at(brdf b, tile_lobe lobe, vec3 direction, float width, float cosine, float soft)
+{
+    const float along = dot(b.view, direction);
     if (!is_ggx(b.kind)) {
-        const float all = lobe.specular * exp2_fast(lobe.sharpness * (along - 1.0));
-        return soft * (lobe.diffuse + vec2(all / (1.0 + x), all));
+        const float exponent = 1.0 / width;
+        return lobe.specular * (exponent + 2.0) * exp2_fast(1.44269504 * exponent * (along - 1.0));
     }
     const float height = b.view_cosine + cosine, twice = 2.0 + 2.0 * along;
-    const float safe = max(twice - lobe.narrowness * (height * height), 1e-6);
+    const float safe = max(twice - (1.0 - min(width, 0.999)) * (height * height), 1e-6);
     const float masking = soft * (2.0 - lobe.alpha) + lobe.alpha;
-    const float light = lobe.specular * (twice * twice) / (safe * safe * masking * (1.0 + x));
-    return soft * (lobe.diffuse + vec2(light, light * (1.0 + x)));
+    return lobe.specular * width * (twice * twice) / (safe * safe * masking);
 }
 
 // Each of four threads adds up one of the four numbers of all.
@@ -119,22 +128,47 @@ void find_runs(uint count)
     }
 }
 
+// Looks at a group by the mean direction of its light, and returns what it weighs, or 0 where no tile of it reaches above
+// the horizon. As look_at_groups() in point_tiles_kernel.c.
+float look_at_group(brdf b, tile_lobe lobe, uint i)
+{
+    const vec4 middle = STATE.groups.at[3u * i], light = STATE.groups.at[3u * i + 1u];
+    const vec2 width = STATE.groups.at[3u * i + 2u].xy; // variance and spread
+    if (light.w == 0.0 || dot(b.normal, middle.xyz) <= -middle.w) {
+        places[i] = NOWHERE;
+        return 0.0;
+    }
+    const float cosine = dot(b.normal, light.xyz), soft = soft_cosine(cosine, middle.w);
+    const float all = specular_at(b, lobe, light.xyz, lobe.width + width.x, cosine, soft);
+    const float specular = all / (1.0 + lobe.to_surface * width.y);
+    places[i] = 0u;
+    lobes[i] = specular;
+    gains[i] = (lobe.diffuse + all) / (lobe.diffuse + specular);
+    sums[i] = floatBitsToUint(light.w * soft * specular);
+    return light.w * soft * (lobe.diffuse + specular);
+}
+
 // Returns how many groups there are, each thread having looked at some that follow each other.
-uint choose_groups(vec3 normal)
+uint choose_groups(brdf b, tile_lobe lobe)
 {
     const uint all = (STATE.tile_count + LAYOUT_TILE_GROUP - 1u) / LAYOUT_TILE_GROUP;
     const uint each = (all + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x;
     const uint begin = min(each * gl_LocalInvocationID.x, all), end = min(begin + each, all);
     uint own = 0u, count;
+    float weight = 0.0;
     for (uint i = begin; i < end; i++) {
-        const vec4 group = STATE.groups.at[i];
-        places[i] = dot(normal, group.xyz) > -group.w ? own++ : NOWHERE;
+        weight += look_at_group(b, lobe, i);
+        if (places[i] != NOWHERE)
+            places[i] = own++;
     }
+    const float least = sum_of_group(vec4(weight, 0.0, 0.0, 0.0)).x * REFINED_PART;
     const uint before = sum_before_in_group(own, count);
     for (uint i = begin; i < end; i++)
         if (places[i] != NOWHERE) {
             places[i] += before;
             groups[places[i]] = i;
+            if (uintBitsToFloat(sums[i]) > least)
+                lobes[i] = -1.0;
         }
     barrier();
     find_runs(count);
@@ -147,20 +181,26 @@ uint position_of(uint i)
     return groups[i / LAYOUT_TILE_GROUP] * LAYOUT_TILE_GROUP + i % LAYOUT_TILE_GROUP;
 }
 
+// Light x BRDF x cosine of a tile: of what BRDF samples leave, and of all.
 vec2 weigh(brdf b, tile_lobe lobe, uint position)
 {
     if (position >= STATE.tile_count)
         return vec2(0.0);
     const vec4 tile = STATE.tiles.at[position];
-    const float x = lobe.to_surface * STATE.tile_spreads.at[position];
-    return tile.w > 0.0 ? tile.w * lobe_at(b, lobe, tile.xyz, x) : vec2(0.0);
+    const uint group = position / LAYOUT_TILE_GROUP;
+    const float cosine = dot(b.normal, tile.xyz), soft = soft_cosine(cosine, STATE.tile_edge);
+    float specular = lobes[group];
+    if (specular < 0.0)
+        specular = specular_at(b, lobe, tile.xyz, lobe.width, cosine, soft) /
+                   (1.0 + lobe.to_surface * STATE.tile_spreads.at[position]);
+    const float weight = tile.w > 0.0 ? tile.w * soft * (lobe.diffuse + specular) : 0.0;
+    return vec2(weight, weight * gains[group]);
 }
 
 // Fills in the sums of `count` tiles and returns that of all. left: part of the light that is left to BRDF samples.
 // brightness: of the rest. Threads take pieces of odd lengths, so that neighbours reach for different banks of memory.
-uint weigh_tiles(brdf b, uint count, out float left, out float brightness)
+uint weigh_tiles(brdf b, tile_lobe lobe, uint count, out float left, out float brightness)
 {
-    const tile_lobe lobe = prepare_lobe(b);
     const uint each = (count + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x | 1u;
     const uint begin = min(each * gl_LocalInvocationID.x, count), end = min(begin + each, count);
     uint largest = 0u, own = 0u, total;
@@ -275,8 +315,9 @@ void main()
     if (!weighs_tiles(p))
         return;
     float left, brightness;
-    const uint count = choose_groups(p.surface.normal) * LAYOUT_TILE_GROUP;
-    const uint total = weigh_tiles(p.surface, count, left, brightness);
+    const tile_lobe lobe = prepare_lobe(p.surface);
+    const uint count = choose_groups(p.surface, lobe) * LAYOUT_TILE_GROUP;
+    const uint total = weigh_tiles(p.surface, lobe, count, left, brightness);
     divide_samples(left, p);
     p.surface.specular_share = 1.0; // of what the tiles leave over
     const vec4 sum = sum_of_group(total != 0u ? light_point(p, count, total, brightness) : vec4(0.0));

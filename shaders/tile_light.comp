@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // The light of all tiles in proportion to the brightest, by a single work group. As find_light() in
-// src/sampling/tiles.c. And what brightness that is, as find_hues() in tile_colours.c has it.
+// src/sampling/tiles.c. What brightness that is, as find_hues() in tile_colours.c has it. And the light of groups of
+// tiles, as sum_group() in tile_groups.c.
 #include "common.glsl"
 #include "fixed_point.glsl"
 #include "scan.glsl"
@@ -25,6 +26,23 @@ layout_row_sum total_at(uint position)
     return layout_row_sum(STATE.tile_totals.at[position].sum, STATE.tile_totals.at[position].exponent);
 }
 
+void sum_group_of_tiles(uint group)
+{
+    const uint end = min((group + 1u) * LAYOUT_TILE_GROUP, STATE.tile_count);
+    vec3 sum = vec3(0.0);
+    float light = 0.0, spread = 0.0;
+    for (uint i = group * LAYOUT_TILE_GROUP; i < end; i++) {
+        const vec4 tile = STATE.tiles.at[i];
+        light += tile.w;
+        spread += tile.w > 0.0 ? tile.w * STATE.tile_spreads.at[i] : 0.0;
+        sum += tile.w * tile.xyz;
+    }
+    const float size = length(sum), part = light > 0.0 ? min(size / light, 1.0) : 1.0;
+    const vec3 mean = part > 1e-3 && size > 0.0 ? sum / size : STATE.groups.at[3u * group].xyz;
+    STATE.groups.at[3u * group + 1u] = vec4(mean, light);
+    STATE.groups.at[3u * group + 2u] = vec4(1.0 - part * part, light > 0.0 ? spread / light : 0.0, 0.0, 0.0);
+}
+
 void main()
 {
     begin_with_state();
@@ -41,7 +59,11 @@ void main()
         sums += light > 0.0 ? vec2(STATE.tile_hues.at[i].w, light) : vec2(0.0);
     }
     parts[gl_LocalInvocationID.x] = sums;
+    memoryBarrierBuffer();
     barrier();
+    const uint groups = (STATE.tile_count + LAYOUT_TILE_GROUP - 1u) / LAYOUT_TILE_GROUP;
+    for (uint group = gl_LocalInvocationID.x; group < groups; group += gl_WorkGroupSize.x)
+        sum_group_of_tiles(group);
     if (gl_LocalInvocationID.x != 0u)
         return;
     for (uint i = 1u; i < gl_WorkGroupSize.x; i++)

@@ -75,9 +75,14 @@ static inline void tangent_frame(vec3 n, vec3 *tangent, vec3 *bitangent)
     *bitangent = (vec3){b, sign + n.y * n.y * a, -n.y};
 }
 
+static inline float vec3_luminance(vec3 colour)
+{
+    return 0.2126f * colour.x + 0.7152f * colour.y + 0.0722f * colour.z;
+}
+
 static inline float luminance(const float rgb[3])
 {
-    return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
+    return vec3_luminance((vec3){rgb[0], rgb[1], rgb[2]});
 }
 
 #endif

@@ -17,15 +17,19 @@ static inline int fixed_point_exponent(float largest, int bits)
     return bits - exponent < 126 ? bits - exponent : 126;
 }
 
-/* The weights as integers: rounded, and at least 1 for one above 0, however small. */
+/* A weight as an integer: rounded, and at least 1 for one above 0, however small. */
+static inline uint32_t fixed_point_integer(float weight, float factor)
+{
+    int32_t least = weight > 0.0f, integer = (int32_t)(weight * factor + 0.5f);
+    return (uint32_t)(integer > least ? integer : least);
+}
+
 static inline void fixed_point_quantise(const float *restrict weights, uint32_t count, float factor,
                                         uint32_t *restrict integers)
 {
 #pragma omp simd
-    for (uint32_t i = 0; i < count; i++) {
-        int32_t least = weights[i] > 0.0f, integer = (int32_t)(weights[i] * factor + 0.5f);
-        integers[i] = (uint32_t)(integer > least ? integer : least);
-    }
+    for (uint32_t i = 0; i < count; i++)
+        integers[i] = fixed_point_integer(weights[i], factor);
 }
 
 /* Writes the sums of the integers before each, beginning with sum, and returns that of all. */

@@ -38,17 +38,18 @@ typedef struct gathering {
     point_tiles tiles;
 } gathering;
 
-/* Density, 1/sr, with which the light techniques draw a direction, each weighted with its expected count. */
-static inline float gathering_light_density(const gathering *g, const face_place *at)
+/* face_place_density()'s unit for the density with which the light techniques draw a direction, each weighted with its
+ * expected count. */
+static inline float gathering_unit_density(const gathering *g, const face_place *at)
 {
     const float expected = g->expected_in_face[at->face];
     if (!(expected > 0.0f))
         return 0.0f;
     if (!g->has_tiles)
-        return expected * pools_density(g->pools, g->pool, at);
+        return expected * pools_unit_density(g->pools, g->pool, at);
     const tiles *t = g->pools->bins->tiles;
     const uint32_t position = tiles_position(t, at->face, at->row, at->column);
-    return expected * (point_tiles_probability(&g->tiles, position) * tiles_density(t, g->pools->tables, at));
+    return expected * (point_tiles_probability(&g->tiles, position) * tiles_unit_density(t, at));
 }
 
 /* Samples first ... first + count - 1, in the arrays of all pools, that a technique takes. */

@@ -98,12 +98,11 @@ static inline float normal_bins_probability(const normal_bins *b, uint32_t bin, 
     return (float)(tile[1] - tile[0]) * b->shares[bin];
 }
 
-/* Density, 1/sr, of a direction given the bin, from the stored integers. Drawing and MIS both use this. */
-static inline float normal_bins_density(const normal_bins *b, const helio_tables *tables, uint32_t bin,
-                                        const face_place *at)
+/* face_place_density()'s unit for the density given the bin. */
+static inline float normal_bins_unit_density(const normal_bins *b, uint32_t bin, const face_place *at)
 {
     const uint32_t position = tiles_position(b->tiles, at->face, at->row, at->column);
-    return normal_bins_probability(b, bin, position) * tiles_density(b->tiles, tables, at);
+    return normal_bins_probability(b, bin, position) * tiles_unit_density(b->tiles, at);
 }
 
 /* ---- the bin of a normal ---- */

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * point_tiles.h - the tiles of the map as one shiny point weighs them: light x BRDF x cosine, each at the centre of a
  * tile. Where bins of normals know the light and the normal, this knows the lobe as well, for the price of a few
- * operations for each tile above the point's horizon.
+ * operations for each tile above the point's horizon. Far from the lobe it is enough to know it once for a group of
+ * tiles.
  *
  * Weights become integers, as those of bins do, so that the probability that is reported is the one that is drawn. */
 #ifndef HELIOSTAT_SRC_POINT_TILES_H
@@ -11,7 +12,7 @@
 #include "sampling/tiles.h"
 
 /* What tiles are weighed with: a BRDF in a form that is cheap and smooth, with its lobe no narrower than tiles are, as
- * it stands for all of a tile. docs/method.md has the formulas. */
+ * it stands for all of a tile, or of a group of them. docs/method.md has the formulas. */
 typedef struct tile_lobe {
     helio_material_kind kind; /* PHONG or GGX */
     vec3 normal;
@@ -19,10 +20,9 @@ typedef struct tile_lobe {
     float edge;       /* sine of the radius of a tile: those down to -edge below the horizon reach above it */
     float slope;      /* 1 / (4 edge) */
     float diffuse;    /* luminance of the diffuse lobe, 1/sr */
-    float specular;   /* ... and of the specular one */
+    float specular;   /* ... and a factor of the specular one */
+    float width;      /* PHONG: 1 / exponent, GGX: alpha^2, widened by a tile */
     float to_surface; /* BRDF samples look after x / (1 + x) of the specular light of a tile, x this times its spread */
-    float sharpness;  /* PHONG: the lobe is 2^(-sharpness (1 - cosine)) */
-    float narrowness; /* GGX: 1 - alpha^2 */
     float alpha;      /* GGX, as it is: for the masking */
     float view_cosine;
 } tile_lobe;
@@ -33,12 +33,8 @@ typedef struct point_tiles {
     float brightness; /* of the light, by tiles.light: what the point is thought to get from light samples */
     float hue[3];     /* mean over the tiles, each with its probability */
     float left;       /* part of the light that is left to BRDF samples, 0 ... 1 */
-    uint32_t group_count;
-    uint8_t runs[TILE_RUNS + 1];              /* where the groups of each run begin, and the end of all */
-    uint8_t groups[TILE_GROUPS];              /* [group_count]: those that reach above the horizon and give light */
-    uint8_t places[TILE_GROUPS];              /* [groups of the tiles]: where in these arrays, or TILE_GROUPS */
-    uint32_t sums[TILE_GROUPS + 1];           /* [group_count + 1]: prefix sums over groups */
-    alignas(64) uint32_t weights[TILES_MOST]; /* [group_count][TILE_GROUP] */
+    uint32_t sums[TILE_GROUPS + 1];           /* prefix sums over groups */
+    alignas(64) uint32_t weights[TILES_MOST]; /* below 2^31 together */
 } point_tiles;
 
 /* Part of a point's samples that are best drawn from the specular lobe where light is even, at an even split: nearly
@@ -58,8 +54,7 @@ void tile_lobe_prepare(tile_lobe *lobe, const tiles *t, const brdf *b);
 /* Probability of a tile. Drawing and MIS both use this. */
 static inline float point_tiles_probability(const point_tiles *p, uint32_t position)
 {
-    const uint32_t place = p->places[position / TILE_GROUP];
-    return place < TILE_GROUPS ? (float)p->weights[place * TILE_GROUP + position % TILE_GROUP] * p->share : 0.0f;
+    return (float)p->weights[position] * p->share;
 }
 
 #endif

@@ -5,26 +5,12 @@
 #include "sampling/kernels.h"
 #include "sampling/tile_tree.h"
 
-/* ---- weights ---- */
+#include <string.h>
 
-/* Groups of tiles that are not wholly below the horizon, nor black. */
-static void choose_groups(const tiles *t, vec3 normal, point_tiles *p)
-{
-    int32_t is_above[TILE_GROUPS] = {0};
-#pragma omp simd
-    for (uint32_t i = 0; i < t->group_count; i++) {
-        float cosine = normal.x * t->group_x[i] + normal.y * t->group_y[i] + normal.z * t->group_z[i];
-        is_above[i] = cosine > -t->group_edge[i];
-    }
-    p->group_count = p->runs[0] = 0;
-    for (uint32_t i = 0; i < TILE_GROUPS; i++) {
-        const bool is_taken = is_above[i] && t->group_is_lit[i];
-        p->groups[p->group_count] = (uint8_t)i; /* overwritten by the next where it is not taken */
-        p->places[i] = (uint8_t)(is_taken ? p->group_count : TILE_GROUPS);
-        p->group_count += is_taken;
-        p->runs[i / TILE_RUN + 1] = (uint8_t)p->group_count;
-    }
-}
+/* A group of which the specular lobe has more than this part of all light has its tiles weighed by themselves. */
+static const float REFINED_PART = 1.0f / 256.0f;
+
+/* ---- lobes ---- */
 
 /* The cosine between normal and a tile, but falling to 0 where the tile's last corner sinks below the horizon. */
 static inline float soft_cosine(float cosine, float edge, float slope)
@@ -34,48 +20,132 @@ static inline float soft_cosine(float cosine, float edge, float slope)
     return cosine < edge ? risen * risen * slope : cosine;
 }
 
-/* BRDF x cosine: of what BRDF samples leave, and of all. */
-typedef struct lobe_values {
-    float light, all;
-} lobe_values;
-
-/* x: what BRDF samples look after is x / (1 + x) of the specular lobe. */
-static inline __attribute__((always_inline)) lobe_values lobe_at(helio_material_kind kind, const tile_lobe *lobe,
-                                                                 vec3 direction, float x)
+/* The specular lobe, of this width, / divisor. cosine: between normal and direction; soft: the same, softened. */
+static inline __attribute__((always_inline)) float specular_at(helio_material_kind kind, const tile_lobe *lobe,
+                                                               vec3 direction, float width, float cosine, float soft,
+                                                               float divisor)
 {
-    const float cosine = dot(lobe->normal, direction), soft = soft_cosine(cosine, lobe->edge, lobe->slope);
     const float along = dot(lobe->axis, direction);
     if (kind == HELIO_MATERIAL_PHONG) {
-        const float all = lobe->specular * exp2_fast(lobe->sharpness * (along - 1.0f));
-        return (lobe_values){soft * (lobe->diffuse + all / (1.0f + x)), soft * (lobe->diffuse + all)};
+        const float per_nat = 1.44269504f, exponent = 1.0f / width;
+        return lobe->specular * (exponent + 2.0f) * exp2_fast(per_nat * exponent * (along - 1.0f)) / divisor;
     }
     /* D by (n.h)^2 = (n.v + n.l)^2 / (2 + 2 v.l), without the square root of h; times Smith's masking of the light,
      * nearly cosine / (cosine (2 - alpha) + alpha). */
+    const float narrowness = 1.0f - (width < 0.999f ? width : 0.999f);
     const float sum = lobe->view_cosine + cosine, twice = 2.0f + 2.0f * along;
-    const float falling = twice - lobe->narrowness * (sum * sum);
+    const float falling = twice - narrowness * (sum * sum);
     const float masking = soft * (2.0f - lobe->alpha) + lobe->alpha;
     const float safe = falling > 1e-6f ? falling : 1e-6f;
-    const float light = lobe->specular * (twice * twice) / (safe * safe * masking * (1.0f + x));
-    return (lobe_values){soft * (lobe->diffuse + light), soft * (lobe->diffuse + light * (1.0f + x))};
+    return lobe->specular * width * (twice * twice) / (safe * safe * (masking * divisor));
 }
 
-/* The weights of the chosen groups' tiles, and what they were if BRDF samples looked after nothing. */
-static inline __attribute__((always_inline)) void weigh_groups(helio_material_kind kind, const tiles *t,
-                                                               const tile_lobe *given, const point_tiles *p,
-                                                               float *restrict weights, float *restrict wholes)
+/* ---- groups ---- */
+
+/* What a point thinks of a group of tiles, by the mean direction of its light. */
+typedef struct group_lobes {
+    alignas(64) int32_t is_taken[TILE_GROUPS];    /* not black, nor wholly below the horizon */
+    alignas(64) float specular[TILE_GROUPS];      /* the specular lobe that BRDF samples leave, 1/sr */
+    alignas(64) float gain[TILE_GROUPS];          /* light of all in relation to the light that they leave */
+    alignas(64) float weight[TILE_GROUPS];        /* light x BRDF x cosine */
+    alignas(64) float specular_part[TILE_GROUPS]; /* of that, the specular lobe's */
+    alignas(64) float wholes[TILE_GROUP];         /* of tiles that are weighed by themselves: sums, over all such groups, of
+                                                     their weights if BRDF samples left nothing out */
+} group_lobes;
+
+/* All groups, as there are no more than a few registers of them. The light of a group is as wide as the directions of
+ * its tiles vary, and so is a lobe that stands for all of it. */
+static inline __attribute__((always_inline)) void look_at_groups(helio_material_kind kind, const tiles *t,
+                                                                 const tile_lobe *given, group_lobes *restrict groups)
 {
     const tile_lobe lobe = *given;
-    for (uint32_t k = 0; k < p->group_count; k++) {
-        const uint32_t first = (uint32_t)p->groups[k] * TILE_GROUP;
-        const float *x = t->x + first, *y = t->y + first, *z = t->z + first, *light = t->light + first;
-        const float *spread = t->spread + first;
-        float *to = weights + (size_t)k * TILE_GROUP, *whole = wholes + (size_t)k * TILE_GROUP;
+    const vec3 normal = lobe.normal;
+    const tile_groups *g = &t->groups;
 #pragma omp simd
-        for (uint32_t i = 0; i < TILE_GROUP; i++) {
-            const lobe_values values = lobe_at(kind, &lobe, (vec3){x[i], y[i], z[i]}, lobe.to_surface * spread[i]);
-            to[i] = light[i] * values.light;
-            whole[i] = light[i] * values.all;
-        }
+    for (uint32_t i = 0; i < TILE_GROUPS; i++) {
+        const vec3 direction = {g->light_x[i], g->light_y[i], g->light_z[i]};
+        const float above = normal.x * g->x[i] + normal.y * g->y[i] + normal.z * g->z[i];
+        const float cosine = dot(normal, direction), soft = soft_cosine(cosine, g->edge[i], g->slope[i]);
+        const float divisor = 1.0f + lobe.to_surface * g->spread[i], width = lobe.width + g->variance[i];
+        const float left = specular_at(kind, &lobe, direction, width, cosine, soft, divisor);
+        const float light = g->light[i] * soft;
+        const int32_t taken = -((above > -g->edge[i]) & (g->light[i] > 0.0f));
+        groups->is_taken[i] = taken;
+        groups->specular[i] = left;
+        groups->gain[i] = (lobe.diffuse + left * divisor) / (lobe.diffuse + left);
+        groups->weight[i] = masked(light * (lobe.diffuse + left), taken);
+        groups->specular_part[i] = light * left;
+    }
+}
+
+/* In an order that is the same for all instruction sets. */
+static inline float sum_in_order(const float *values, uint32_t count)
+{
+    enum { LANES = 16 };
+    float lanes[LANES], sum = 0.0f;
+#pragma omp simd
+    for (uint32_t i = 0; i < LANES; i++) {
+        float lane = values[i];
+        for (uint32_t k = i + LANES; k < count; k += LANES)
+            lane += values[k];
+        lanes[i] = lane;
+    }
+    for (uint32_t i = 0; i < LANES; i++)
+        sum += lanes[i];
+    return sum;
+}
+
+/* ---- tiles ---- */
+
+/* With one value of the lobe for all. */
+static inline __attribute__((always_inline)) void weigh_alike(const tiles *t, const tile_lobe *lobe, uint32_t group,
+                                                              float specular, float *restrict weights)
+{
+    const vec3 normal = lobe->normal;
+    const float edge = lobe->edge, slope = lobe->slope, value = lobe->diffuse + specular;
+    const uint32_t first = group * TILE_GROUP;
+    const float *x = t->x + first, *y = t->y + first, *z = t->z + first, *light = t->light + first;
+#pragma omp simd
+    for (uint32_t i = 0; i < TILE_GROUP; i++)
+        weights[i] = light[i] * (soft_cosine(dot(normal, (vec3){x[i], y[i], z[i]}), edge, slope) * value);
+}
+
+/* With a value for each. wholes: adds what they would weigh if BRDF samples looked after nothing. */
+static inline __attribute__((always_inline)) void weigh_apart(helio_material_kind kind, const tiles *t,
+                                                              const tile_lobe *lobe, uint32_t group,
+                                                              float *restrict weights, float *restrict wholes)
+{
+    const uint32_t first = group * TILE_GROUP;
+    const float *x = t->x + first, *y = t->y + first, *z = t->z + first, *light = t->light + first;
+    const float *spread = t->spread + first;
+#pragma omp simd
+    for (uint32_t i = 0; i < TILE_GROUP; i++) {
+        const vec3 direction = {x[i], y[i], z[i]};
+        const float cosine = dot(lobe->normal, direction), soft = soft_cosine(cosine, lobe->edge, lobe->slope);
+        const float divisor = 1.0f + lobe->to_surface * spread[i];
+        const float specular = specular_at(kind, lobe, direction, lobe->width, cosine, soft, divisor);
+        weights[i] = light[i] * (soft * (lobe->diffuse + specular));
+        wholes[i] += light[i] * (soft * (lobe->diffuse + specular * divisor));
+    }
+}
+
+static inline __attribute__((always_inline)) void weigh_groups(helio_material_kind kind, const tiles *t,
+                                                               const tile_lobe *given, group_lobes *restrict groups,
+                                                               float *restrict weights)
+{
+    const tile_lobe lobe = *given;
+    look_at_groups(kind, t, &lobe, groups);
+    const float least = sum_in_order(groups->weight, TILE_GROUPS) * REFINED_PART;
+    memset(groups->wholes, 0, sizeof groups->wholes);
+    for (uint32_t group = 0; group < TILE_GROUPS; group++) {
+        float *to = weights + (size_t)group * TILE_GROUP;
+        if (!groups->is_taken[group])
+            memset(to, 0, TILE_GROUP * sizeof *to);
+        else if (groups->specular_part[group] > least) {
+            weigh_apart(kind, t, &lobe, group, to, groups->wholes);
+            groups->gain[group] = 0.0f;
+        } else
+            weigh_alike(t, &lobe, group, groups->specular[group], to);
     }
 }
 
@@ -91,60 +161,55 @@ static float largest_of(const float *weights, uint32_t count)
     return float_of_bits(largest_bits);
 }
 
-/* A sum of weights that has the same bits with every instruction set: of integers, in their order. */
-static double exact_sum(const float *weights, uint32_t count, uint32_t tile_count, uint32_t *integers, uint32_t *sum)
-{
-    const int exponent = fixed_point_exponent(largest_of(weights, count), tables_summand_bits(tile_count));
-    fixed_point_quantise(weights, count, ldexpf(1.0f, exponent), integers);
-    *sum = fixed_point_total(integers, count, 0);
-    return ldexp((double)*sum, -exponent);
-}
-
-static void sum_groups(point_tiles *p)
+static void sum_groups(const float *weights, float factor, point_tiles *p)
 {
     uint32_t sum = 0;
-    for (uint32_t k = 0; k < p->group_count; k++) {
-        p->sums[k] = sum;
-        sum = fixed_point_total(p->weights + (size_t)k * TILE_GROUP, TILE_GROUP, sum);
+    for (uint32_t group = 0; group < TILE_GROUPS; group++) {
+        const size_t first = (size_t)group * TILE_GROUP;
+        p->sums[group] = sum;
+        fixed_point_quantise(weights + first, TILE_GROUP, factor, p->weights + first);
+        sum = fixed_point_total(p->weights + first, TILE_GROUP, sum);
     }
-    p->sums[p->group_count] = sum;
+    p->sums[TILE_GROUPS] = p->total = sum;
+}
+
+/* The sum of all weights, as integers, if BRDF samples looked after nothing. */
+static float find_whole(const point_tiles *p, float factor, group_lobes *groups)
+{
+#pragma omp simd
+    for (uint32_t i = 0; i < TILE_GROUPS; i++)
+        groups->gain[i] *= (float)(int32_t)(p->sums[i + 1] - p->sums[i]); /* below 2^31 */
+    return sum_in_order(groups->gain, TILE_GROUPS) + factor * sum_in_order(groups->wholes, TILE_GROUP);
 }
 
 void KERNEL(weigh_point)(const tiles *t, const tile_lobe *lobe, point_tiles *p)
 {
     alignas(64) float weights[TILES_MOST];
-    alignas(64) float wholes[TILES_MOST];
-    alignas(64) uint32_t integers[TILES_MOST];
-    uint32_t unused;
-    choose_groups(t, lobe->normal, p);
+    group_lobes groups;
     if (lobe->kind == HELIO_MATERIAL_PHONG)
-        weigh_groups(HELIO_MATERIAL_PHONG, t, lobe, p, weights, wholes);
+        weigh_groups(HELIO_MATERIAL_PHONG, t, lobe, &groups, weights);
     else
-        weigh_groups(HELIO_MATERIAL_GGX, t, lobe, p, weights, wholes);
-    const uint32_t count = p->group_count * TILE_GROUP;
-    const double light = exact_sum(weights, count, t->count, p->weights, &p->total);
-    const double all = exact_sum(wholes, count, t->count, integers, &unused);
-    p->brightness = (float)light;
-    p->left = all > light ? (float)(1.0 - light / all) : 0.0f;
-    p->share = p->total != 0 ? 1.0f / (float)p->total : 0.0f;
-    sum_groups(p);
+        weigh_groups(HELIO_MATERIAL_GGX, t, lobe, &groups, weights);
+    const int exponent = fixed_point_exponent(largest_of(weights, TILES_MOST), tables_summand_bits(t->count));
+    const float factor = ldexpf(1.0f, exponent);
+    sum_groups(weights, factor, p);
+    const float whole = find_whole(p, factor, &groups), light = (float)p->total;
+    p->brightness = ldexpf(light, -exponent);
+    p->left = whole > light ? 1.0f - light / whole : 0.0f;
+    p->share = p->total != 0 ? 1.0f / light : 0.0f;
 }
 
 void KERNEL(mix_hues)(const tiles *t, point_tiles *p)
 {
+    const float *reds = t->colours.hue[0], *greens = t->colours.hue[1], *blues = t->colours.hue[2];
+    const int32_t *weights = (const int32_t *)p->weights; /* below 2^31 */
     float red = 0, green = 0, blue = 0;
-    for (uint32_t k = 0; k < p->group_count; k++) {
-        const uint32_t first = (uint32_t)p->groups[k] * TILE_GROUP;
-        const float *reds = t->colours.hue[0] + first, *greens = t->colours.hue[1] + first;
-        const float *blues = t->colours.hue[2] + first;
-        const int32_t *weights = (const int32_t *)p->weights + (size_t)k * TILE_GROUP; /* below 2^31 */
 #pragma omp simd reduction(+ : red, green, blue)
-        for (uint32_t i = 0; i < TILE_GROUP; i++) {
-            const float weight = (float)weights[i];
-            red += weight * reds[i];
-            green += weight * greens[i];
-            blue += weight * blues[i];
-        }
+    for (uint32_t i = 0; i < TILES_MOST; i++) {
+        const float weight = (float)weights[i];
+        red += weight * reds[i];
+        green += weight * greens[i];
+        blue += weight * blues[i];
     }
     p->hue[0] = red * p->share;
     p->hue[1] = green * p->share;
@@ -156,7 +221,9 @@ void KERNEL(mix_hues)(const tiles *t, point_tiles *p)
 static void choose_tiles(const normal_bins *bins, const point_tiles *p, uint32_t samples, uint32_t first,
                          uint32_t count, uint32_t seed, tile_draw *draws)
 {
-    const tile_tree tree = {p->runs, p->groups, p->sums, p->weights, bins->list_starts};
+    static const uint8_t runs[TILE_RUNS + 1] = {0, 16, 32, 48, 64, 80, 96};
+    static const uint8_t groups[TILE_GROUPS] = {0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26,27,28,29,30,31,32,33,34,35,36,37,38,39,40,41,42,43,44,45,46,47,48,49,50,51,52,53,54,55,56,57,58,59,60,61,62,63,64,65,66,67,68,69,70,71,72,73,74,75,76,77,78,79,80,81,82,83,84,85,86,87,88,89,90,91,92,93,94,95};
+    const tile_tree tree = {runs, groups, p->sums, p->weights, bins->list_starts};
     tile_tree_draw(&tree, true, samples, first, count, seed, draws);
     for (uint32_t i = 0; i < count; i++)
         __builtin_prefetch(&bins->listed[draws[i].element]);

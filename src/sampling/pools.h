@@ -60,16 +60,21 @@ static inline float *pools_array(const helio_pools *pools, uint32_t pool, enum s
     return pools->samples + (size_t)array * pools->stride + (size_t)pool * pools->pool_length;
 }
 
-/* Density, 1/sr, with which a pool draws a direction; for pools of faces it must be the pool's own. Drawing and MIS
- * both use this. */
-static inline float pools_density(const helio_pools *pools, uint32_t pool, const face_place *at)
+/* face_place_density()'s unit for the density with which a pool draws a direction; for pools of faces it must be the
+ * pool's own. */
+static inline float pools_unit_density(const helio_pools *pools, uint32_t pool, const face_place *at)
 {
     if (pools->bins != NULL)
-        return normal_bins_density(pools->bins, pools->tables, pool, at);
-    face_table table = tables_face(pools->tables, at->face);
-    float density = face_table_density(&table, at->row, at->column, at->u, at->v);
-    return pools->parts.light == STRATEGY_LIGHT_WHOLE ? density * tables_face_probability(pools->tables, at->face)
-                                                      : density;
+        return normal_bins_unit_density(pools->bins, pool, at);
+    const float unit = tables_unit_density(pools->tables, at);
+    return pools->parts.light == STRATEGY_LIGHT_WHOLE ? unit * tables_face_probability(pools->tables, at->face) : unit;
+}
+
+/* That density, 1/sr. */
+static inline float pools_density(const helio_pools *pools, uint32_t pool, const face_place *at)
+{
+    return face_place_density(at->u, at->v, tables_texel_weight(pools->tables, at),
+                              pools_unit_density(pools, pool, at));
 }
 
 /* Samples of a bin's pool that are shared out to tiles together: as many as the widest window has, if that is not too

@@ -223,7 +223,7 @@ typedef struct bin_tree {
 static void make_bin_tree(const normal_bins *bins, uint32_t bin, bin_tree *tree)
 {
     const uint32_t *sums = normal_bins_sums(bins, bin), count = bins->tiles->count;
-    const uint32_t group_count = bins->tiles->group_count;
+    const uint32_t group_count = bins->tiles->groups.count;
 #pragma omp simd
     for (uint32_t i = 0; i < count; i++)
         tree->weights[i] = sums[i + 1] - sums[i];

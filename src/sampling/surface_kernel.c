@@ -4,6 +4,7 @@
 #include "core/random.h"
 #include "env/environment.h"
 #include "sampling/kernels.h"
+#include "sampling/texel_weight.h"
 
 /* Directions of samples first ... first + count - 1, from scrambled Sobol' points of the point's own. */
 static inline __attribute__((always_inline)) void draw_directions(helio_material_kind kind, const gathering *g,
@@ -31,6 +32,9 @@ static inline __attribute__((always_inline)) void draw_directions(helio_material
 typedef struct texel_list {
     uint32_t face[BLOCK_SAMPLES], row[BLOCK_SAMPLES], column[BLOCK_SAMPLES];
     float u[BLOCK_SAMPLES], v[BLOCK_SAMPLES];
+    float solid_angle[BLOCK_SAMPLES]; /* relative, see texel_weight.h */
+    int32_t exponent[BLOCK_SAMPLES];  /* of the row */
+    float unit[BLOCK_SAMPLES];        /* of gathering_unit_density() */
 } texel_list;
 
 static void find_texels(const gathering *g, uint32_t count, const float *restrict x, const float *restrict y,
@@ -48,28 +52,47 @@ static void find_texels(const gathering *g, uint32_t count, const float *restric
     }
 }
 
-/* Texels and tables are in no near cache, and where a sample goes no processor can guess: all are sent for before the
- * first is waited for. */
-static void fetch_ahead(const gathering *g, uint32_t count, const texel_list *texels)
+/* Texels are in no near cache, and where a sample goes no processor can guess: all are sent for before the first is
+ * waited for. Some end in the next line of the cache. */
+static inline __attribute__((always_inline)) void fetch_ahead(const gathering *g, uint32_t count,
+                                                              const texel_list *texels)
 {
     for (uint32_t i = 0; i < count; i++) {
-        face_table table = tables_face(g->pools->tables, texels->face[i]);
-        __builtin_prefetch(environment_texel(g->environment, texels->face[i], texels->row[i], texels->column[i]));
-        __builtin_prefetch(table.rows + (size_t)texels->row[i] * (table.size + 1) + texels->column[i]);
+        const float *rgb = environment_texel(g->environment, texels->face[i], texels->row[i], texels->column[i]);
+        __builtin_prefetch(rgb);
+        if (((uintptr_t)rgb & 63) > 52)
+            __builtin_prefetch(rgb + 2);
     }
 }
 
-/* The texel in each direction, and the density of the light techniques there. */
-static void look_up(const gathering *g, uint32_t count, const texel_list *texels, sample_block *block)
+/* The radiance in each direction, and what the density of the light techniques there is made of. */
+static void look_up(const gathering *g, uint32_t count, texel_list *texels, sample_block *block)
 {
     float(*to)[BLOCK_STRIDE] = block->samples;
     for (uint32_t i = 0, k = block->count; i < count; i++, k++) {
         const face_place at = {texels->face[i], texels->row[i], texels->column[i], texels->u[i], texels->v[i]};
+        const texel_weighting weighting = texel_weighting_at(g->pools->tables, &at);
         const float *rgb = environment_texel(g->environment, at.face, at.row, at.column);
         to[SAMPLE_RED][k] = rgb[0];
         to[SAMPLE_GREEN][k] = rgb[1];
         to[SAMPLE_BLUE][k] = rgb[2];
-        to[SAMPLE_DENSITY][k] = gathering_light_density(g, &at);
+        texels->solid_angle[i] = weighting.relative_solid_angle;
+        texels->exponent[i] = weighting.exponent;
+        texels->unit[i] = gathering_unit_density(g, &at);
+    }
+}
+
+/* What the tables know of a texel follows from its radiance, so that they, in no near cache either, are left alone. */
+static inline __attribute__((always_inline)) void find_densities(texel_weight_kind kind, float level, uint32_t count,
+                                                                 const texel_list *restrict texels,
+                                                                 const float *restrict red, float *restrict density)
+{
+    const float *green = red + BLOCK_STRIDE, *blue = green + BLOCK_STRIDE;
+#pragma omp simd
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t weight = texel_weight_integer(kind, (vec3){red[i], green[i], blue[i]}, level,
+                                                     texels->solid_angle[i], texels->exponent[i]);
+        density[i] = face_place_density(texels->u[i], texels->v[i], weight, texels->unit[i]);
     }
 }
 
@@ -87,5 +110,11 @@ void KERNEL(draw_surface)(const gathering *g, uint32_t first, uint32_t count, sa
     find_texels(g, count, x, y, z, &texels);
     fetch_ahead(g, count, &texels);
     look_up(g, count, &texels, block);
+    const float level = g->pools->tables->level, *red = block->samples[SAMPLE_RED] + block->count;
+    float *density = block->samples[SAMPLE_DENSITY] + block->count;
+    if (level > 0.0f)
+        find_densities(WEIGHT_FLUX_ABOVE, level, count, &texels, red, density);
+    else
+        find_densities(WEIGHT_FLUX, 0.0f, count, &texels, red, density);
     block->count += count;
 }

@@ -262,7 +262,7 @@ bool tables_sample(const helio_tables *tables, uint32_t face, uint32_t x, uint32
     uint32_t row = tables_invert(table.marginal, size, y, &row_fraction);
     uint32_t column = tables_invert(table.rows + (size_t)row * (size + 1), size, x, &column_fraction);
     face_place at = tables_place(size, face, row, row_fraction, column, column_fraction);
-    tables_sample_at(tables, &at, face_table_density(&table, row, column, at.u, at.v), sample);
+    tables_sample_at(tables, &at, tables_density(tables, &at), sample);
     return true;
 }
 
@@ -289,11 +289,12 @@ bool helio_tables_sample(const helio_tables *tables, uint32_t face, float u, flo
 
 float helio_tables_density(const helio_tables *tables, const float direction[3], uint32_t *face)
 {
-    cube_position at = cube_project(vec3_from(direction));
-    face_table table = tables_face(tables, at.face);
+    cube_position meeting = cube_project(vec3_from(direction));
+    const uint32_t row = cube_texel(meeting.v, tables->size), column = cube_texel(meeting.u, tables->size);
+    const face_place at = {meeting.face, row, column, meeting.u, meeting.v};
     if (face != NULL)
         *face = at.face;
-    return face_table_density(&table, cube_texel(at.v, table.size), cube_texel(at.u, table.size), at.u, at.v);
+    return tables_density(tables, &at);
 }
 
 uint64_t helio_tables_frame(const helio_tables *tables)

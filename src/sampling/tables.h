@@ -30,7 +30,7 @@ struct helio_tables {
     uint64_t frame;
     uint32_t *rows;       /* [6][R][R + 1], see helio_table_view */
     uint32_t *marginals;  /* [6][R + 1] */
-    float *row_densities; /* [6][R]: what a unit of weight in this row adds to the density, see face_table_density() */
+    float *row_densities; /* [6][R]: what a unit of weight in this row adds to the density, see tables_unit_density() */
     row_sum *row_sums;    /* [6][R]: of the table's weights */
     row_sum *row_fluxes;  /* [6][R]: of luminance x solid angle; the same array for SOLID_ANGLE */
     row_sum face_sums[6]; /* of the marginals */
@@ -45,25 +45,49 @@ struct helio_tables {
 typedef struct face_table {
     uint32_t size;
     const uint32_t *rows, *marginal;
-    const float *row_densities;
 } face_table;
 
 static inline face_table tables_face(const helio_tables *tables, uint32_t face)
 {
     size_t size = tables->size;
-    return (face_table){tables->size, tables->rows + face * size * (size + 1), tables->marginals + face * (size + 1),
-                        tables->row_densities + face * size};
+    return (face_table){tables->size, tables->rows + face * size * (size + 1), tables->marginals + face * (size + 1)};
 }
 
-/* Density, 1/sr, of a direction given its face, from the stored integers: Eq. 1 of the paper's supplement,
- *   pdf(w | f) = I_ij / I_f x K / 4 x (1 + u^2 + v^2)^(3/2),
- * where I_ij / I_f is the product of the probabilities of the row and of the column in it. What depends on the row
- * alone is worked out once a frame. Drawing and MIS both use this. */
-static inline float face_table_density(const face_table *table, uint32_t row, uint32_t column, float u, float v)
+/* A place in a texel. */
+typedef struct face_place {
+    uint32_t face, row, column;
+    float u, v; /* of the place, not of the texel's centre */
+} face_place;
+
+/* The integer that a texel has in its row. */
+static inline uint32_t tables_texel_weight(const helio_tables *tables, const face_place *at)
 {
-    const uint32_t *sums = table->rows + (size_t)row * (table->size + 1);
-    float radius2 = 1.0f + u * u + v * v;
-    return (float)(sums[column + 1] - sums[column]) * table->row_densities[row] * (radius2 * sqrtf(radius2));
+    const size_t row = (size_t)at->face * tables->size + at->row;
+    const uint32_t *sums = tables->rows + row * (tables->size + 1) + at->column;
+    return sums[1] - sums[0];
+}
+
+/* Density, 1/sr, of a place, from the integer of its texel and what a unit of it adds to the density per area of the
+ * face's square. Drawing and MIS both use this. */
+static inline float face_place_density(float u, float v, uint32_t weight, float unit)
+{
+    const float radius2 = 1.0f + u * u + v * v;
+    return (float)(int32_t)weight * unit * (radius2 * sqrtf(radius2));
+}
+
+/* For the density given the face, Eq. 1 of the paper's supplement,
+ *   pdf(w | f) = I_ij / I_f x K / 4 x (1 + u^2 + v^2)^(3/2),
+ * where I_ij / I_f is the product of the probabilities of the row and of the column in it: what depends on the row
+ * alone, worked out once a frame. */
+static inline float tables_unit_density(const helio_tables *tables, const face_place *at)
+{
+    return tables->row_densities[(size_t)at->face * tables->size + at->row];
+}
+
+/* Density, 1/sr, of a direction given its face, from the stored integers. */
+static inline float tables_density(const helio_tables *tables, const face_place *at)
+{
+    return face_place_density(at->u, at->v, tables_texel_weight(tables, at), tables_unit_density(tables, at));
 }
 
 /* Probability that LIGHT gives to a face. */
@@ -87,12 +111,6 @@ static inline uint32_t tables_fraction_within(const uint32_t *sums, uint32_t cou
 /* Inverts prefix sums [count + 1] at x, a fraction of 2^32: the cell that holds it. The total must not be 0. fraction
  * receives where x lies inside of the cell. */
 uint32_t tables_invert(const uint32_t *sums, uint32_t count, uint32_t x, uint32_t *fraction);
-
-/* A place in a texel. */
-typedef struct face_place {
-    uint32_t face, row, column;
-    float u, v; /* of the place, not of the texel's centre */
-} face_place;
 
 /* At fractions of 2^32 of the texel's height and width. */
 static inline face_place tables_place(uint32_t size, uint32_t face, uint32_t row, uint32_t row_fraction,

@@ -1,39 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
  * One row of the tables: weights, their common exponent, integers, prefix sums. */
-#include "core/vector.h"
-#include "sampling/fixed_point.h"
 #include "sampling/kernels.h"
+#include "sampling/texel_weight.h"
 
 enum { PIECE = 256 }; /* texels from weights to sums at a time, so that the integers stay in the nearest cache */
 
-/* A texel that is lit weighs at least this much, the smallest float that no machine flushes to zero. */
-static const float LEAST_WEIGHT = 0x1p-126f;
-
-/* What tables hold of a texel: constants where it is expanded. */
-typedef enum texel_weight {
-    WEIGHT_LUMINANCE,
-    WEIGHT_FLUX,       /* luminance x solid angle */
-    WEIGHT_FLUX_ABOVE, /* the same of what the luminance has above a level */
-} texel_weight;
-
-/* Luminance x relative solid angle. Relative to 4 / K sr, the largest that a texel of a fine cube has, so that no
- * product overflows. */
-static inline float weigh(texel_weight kind, const float *texel, float relative_solid_angle, float level)
-{
-    float light = luminance(texel);
-    float brightest = texel[0] > texel[1] ? texel[0] : texel[1];
-    brightest = brightest > texel[2] ? brightest : texel[2];
-    if (kind == WEIGHT_FLUX_ABOVE)
-        brightest = light = light - level;
-    float weight = light * relative_solid_angle;
-    float least = brightest > 0.0f ? LEAST_WEIGHT : 0.0f;
-    return weight > least ? weight : least;
-}
-
 /* The weights of a row, and the largest of them. The bits of floats that are not negative are ordered like the floats,
  * and compilers are freer to reorder the maximum of integers. */
-static inline __attribute__((always_inline)) float weigh_texels(texel_weight kind, const float *restrict rgb,
+static inline __attribute__((always_inline)) float weigh_texels(texel_weight_kind kind, const float *restrict rgb,
                                                                 const float *restrict solid_angles, float level,
                                                                 uint32_t size, float *restrict weights)
 {
@@ -42,7 +17,7 @@ static inline __attribute__((always_inline)) float weigh_texels(texel_weight kin
 #pragma omp simd reduction(max : largest_bits)
     for (uint32_t i = 0; i < size; i++) {
         float relative = kind == WEIGHT_LUMINANCE ? 1.0f : solid_angles[i] * quarter_texels;
-        weights[i] = weigh(kind, rgb + 3 * (size_t)i, relative, level);
+        weights[i] = texel_weight(kind, vec3_from(rgb + 3 * (size_t)i), relative, level);
         int32_t bits = bits_of_float(weights[i]);
         largest_bits = bits > largest_bits ? bits : largest_bits;
     }

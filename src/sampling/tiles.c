@@ -82,31 +82,6 @@ float tiles_sine(float angle)
     return ceilf(sine * 256.0f + 1.0f) / 256.0f;
 }
 
-/* From the sum of its tiles' centres: all of them lie around it. */
-static void place_group(tiles *t, uint32_t group)
-{
-    const uint32_t first = group * TILE_GROUP, end = first + TILE_GROUP < t->count ? first + TILE_GROUP : t->count;
-    vec3 sum = {0, 0, 0};
-    float least = 1.0f;
-    for (uint32_t i = first; i < end; i++)
-        sum = add(sum, (vec3){t->x[i], t->y[i], t->z[i]});
-    vec3 middle = dot(sum, sum) > 1e-6f ? normalize(sum) : (vec3){1, 0, 0}; /* opposite faces, where T is 1 */
-    for (uint32_t i = first; i < end; i++)
-        least = fminf(least, dot(middle, (vec3){t->x[i], t->y[i], t->z[i]}));
-    t->group_x[group] = middle.x;
-    t->group_y[group] = middle.y;
-    t->group_z[group] = middle.z;
-    t->group_edge[group] = tiles_sine(acosf(least) + t->radius);
-}
-
-static void place_groups(tiles *t)
-{
-    t->edge = tiles_sine(t->radius);
-    t->group_count = (t->count + TILE_GROUP - 1) / TILE_GROUP;
-    for (uint32_t group = 0; group < t->group_count; group++)
-        place_group(t, group);
-}
-
 static void divide_edge(tiles *t)
 {
     for (uint32_t k = 0; k < t->per_edge; k++) {
@@ -136,7 +111,8 @@ helio_status tiles_create(helio_context *context, uint32_t size, tiles **out)
     }
     divide_edge(t);
     place_tiles(t);
-    place_groups(t);
+    t->edge = tiles_sine(t->radius);
+    tile_groups_place(t);
     *out = t;
     return HELIO_OK;
 }
@@ -223,21 +199,11 @@ static void find_light(tiles *t)
     }
 }
 
-static void find_lit_groups(tiles *t)
-{
-    for (uint32_t group = 0; group < t->group_count; group++) {
-        bool is_lit = false;
-        for (uint32_t i = group * TILE_GROUP; i < (group + 1) * TILE_GROUP; i++)
-            is_lit |= t->light[i] > 0.0f;
-        t->group_is_lit[group] = is_lit;
-    }
-}
-
 void tiles_update(tiles *t, const helio_tables *tables)
 {
     summing work = {t, tables};
     context_parallel_for(t->context, CUBE_FACES * (size_t)t->per_edge, sum_row_of_tiles, &work);
     find_light(t);
-    find_lit_groups(t);
+    tile_groups_update(t);
     tile_colours_update(t, tables->environment);
 }

@@ -10,16 +10,13 @@
 
 #include "sampling/tables.h"
 #include "sampling/tile_colours.h"
+#include "sampling/tile_groups.h"
 
 #include <stdalign.h>
 
 enum {
     TILES_PER_EDGE = 16,
     TILES_MOST = CUBE_FACES * TILES_PER_EDGE * TILES_PER_EDGE,
-    TILE_GROUP = 16, /* tiles that follow each other in the order, and so are neighbours: 4 x 4 where T is 16 */
-    TILE_GROUPS = TILES_MOST / TILE_GROUP,
-    TILE_RUN = 16, /* groups that follow each other: a face where T is 16 */
-    TILE_RUNS = TILE_GROUPS / TILE_RUN,
 };
 
 typedef struct tiles {
@@ -42,13 +39,7 @@ typedef struct tiles {
     alignas(64) float spread[TILES_MOST]; /* [count]: angle that the light of a tile takes: its radius, or the part of
                                              it that even light would need; small where there is a sun */
     tile_colours colours;
-    uint32_t group_count;                   /* count / TILE_GROUP, rounded up; tiles past count are black */
-    alignas(64) float group_x[TILE_GROUPS]; /* [group_count]: direction to the middle of a group */
-    alignas(64) float group_y[TILE_GROUPS];
-    alignas(64) float group_z[TILE_GROUPS];
-    alignas(64) float group_edge[TILE_GROUPS]; /* [group_count]: of a group whose cosine to a normal is at most the
-                                                  negative of this, no tile reaches above the horizon */
-    bool group_is_lit[TILE_GROUPS];            /* [group_count] */
+    tile_groups groups;
     uint32_t *sums;                            /* [count][stride]: prefix sums over the rows of a tile */
     float *segment_densities; /* [6][R][T]: what a unit of weight in this row of a tile adds to the density given the
                                  tile, as row_densities of the tables do */
@@ -70,15 +61,18 @@ static inline uint32_t tiles_position(const tiles *t, uint32_t face, uint32_t ro
     return t->positions[(face * t->per_edge + t->of_line[row]) * t->per_edge + t->of_line[column]];
 }
 
-/* Density, 1/sr, of a direction given its tile: the probabilities of its row in the tile and of its texel in that part
- * of the row, from the stored integers. */
-static inline float tiles_density(const tiles *t, const helio_tables *tables, const face_place *at)
+/* face_place_density()'s unit for the density given the tile: the probabilities of its row in the tile and of its texel
+ * in that part of the row, from the stored integers. */
+static inline float tiles_unit_density(const tiles *t, const face_place *at)
 {
     const size_t line = (size_t)at->face * t->size + at->row;
-    const uint32_t *texel = tables->rows + line * (t->size + 1) + at->column;
-    const float radius2 = 1.0f + at->u * at->u + at->v * at->v;
-    return (float)(texel[1] - texel[0]) * t->segment_densities[line * t->per_edge + t->of_line[at->column]] *
-           (radius2 * sqrtf(radius2));
+    return t->segment_densities[line * t->per_edge + t->of_line[at->column]];
+}
+
+/* Density, 1/sr, of a direction given its tile. */
+static inline float tiles_density(const tiles *t, const helio_tables *tables, const face_place *at)
+{
+    return face_place_density(at->u, at->v, tables_texel_weight(tables, at), tiles_unit_density(t, at));
 }
 
 #endif

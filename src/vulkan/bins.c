@@ -34,7 +34,7 @@ static helio_status create_buffers(vulkan_light *light)
         {&light->tile_sums, BUFFER_ON_DEVICE, (uint64_t)t->count * t->stride, sizeof(uint32_t), "the rows of tiles"},
         {&light->segment_densities, BUFFER_ON_DEVICE, segments, sizeof(float), "the densities of tiles"},
         {&light->tile_spreads, BUFFER_ON_DEVICE, t->count, sizeof(float), "the spreads of tiles"},
-        {&light->groups, BUFFER_ON_DEVICE, t->group_count, 4 * sizeof(float), "the groups of tiles"},
+        {&light->groups, BUFFER_ON_DEVICE, t->groups.count, 3 * 4 * sizeof(float), "the groups of tiles"},
         {&light->bins, BUFFER_ON_DEVICE, bins->count, 4 * sizeof(float), "the bins"},
         {&light->bin_sums, BUFFER_ON_DEVICE, (uint64_t)bins->count * (t->count + 1), sizeof(uint32_t),
          "the sums of bins"},
@@ -117,7 +117,7 @@ static helio_status create_passes(vulkan_light *light)
 typedef struct geometry {
     uint32_t grid[TILES_MOST], positions[TILES_MOST];
     float tiles[TILES_MOST][4];
-    float groups[TILE_GROUPS][4];
+    float groups[TILE_GROUPS][3][4];
     float bins[CUBE_FACES * NORMAL_BINS_MOST * NORMAL_BINS_MOST][4];
 } geometry;
 
@@ -131,9 +131,9 @@ static void fill_geometry(const normal_bins *bins, geometry *g)
         g->tiles[i][1] = t->y[i];
         g->tiles[i][2] = t->z[i];
     }
-    for (uint32_t i = 0; i < t->group_count; i++) {
-        vec3_to((vec3){t->group_x[i], t->group_y[i], t->group_z[i]}, g->groups[i]);
-        g->groups[i][3] = t->group_edge[i];
+    for (uint32_t i = 0; i < t->groups.count; i++) {
+        vec3_to((vec3){t->groups.x[i], t->groups.y[i], t->groups.z[i]}, g->groups[i][0]);
+        g->groups[i][0][3] = t->groups.edge[i];
     }
     for (uint32_t i = 0; i < bins->count; i++) {
         vec3_to(bins->bins[i].centre, g->bins[i]);
@@ -148,7 +148,7 @@ static helio_status upload_geometry(vulkan_light *light, vulkan_commands *comman
     HELIO_TRY(commands_upload(commands, &light->tile_positions, g->positions, tile_count * sizeof *g->positions));
     HELIO_TRY(commands_upload(commands, &light->tiles, g->tiles, tile_count * sizeof *g->tiles));
     HELIO_TRY(commands_upload(commands, &light->groups, g->groups,
-                              light->shape->bins->tiles->group_count * sizeof *g->groups));
+                              light->shape->bins->tiles->groups.count * sizeof *g->groups));
     return commands_upload(commands, &light->bins, g->bins, bin_count * sizeof *g->bins);
 }
 
