@@ -6,7 +6,7 @@
 
 #include "core/vector.h"
 #include "env/cube.h"
-#include "sampling/tables.h"
+#include "sampling/texel_weight.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -337,6 +337,40 @@ static void densities_integrate_to_one_over_each_face(void **state)
 }
 
 /* pdf(w | f) = I_ij K / (4 I_f) (1 + u^2 + v^2)^(3/2), with I_ij the luminance, or luminance x solid angle. */
+/* Who has the radiance of a texel at hand need not read the tables. */
+static void check_weights_of_texels(const fixture *f)
+{
+    const helio_tables *t = f->tables;
+    texel_weight_kind kind = t->level > 0 ? WEIGHT_FLUX_ABOVE : WEIGHT_FLUX;
+    if (t->weighting == HELIO_WEIGHTING_PAPER)
+        kind = WEIGHT_LUMINANCE;
+    for (uint32_t i = 0; i < CUBE_FACES * f->size * f->size; i++) {
+        const face_place at = {i / f->size / f->size, i / f->size % f->size, i % f->size, 0, 0};
+        const float solid_angle = f->environment->solid_angle[texel_mirrored(f->size, at.row, at.column)];
+        const float quarter_texels = 0.25f * (float)f->size * (float)f->size;
+        const vec3 radiance = vec3_from(environment_texel(f->environment, at.face, at.row, at.column));
+        const float weight =
+            texel_weight(kind, radiance, kind == WEIGHT_LUMINANCE ? 1 : solid_angle * quarter_texels, t->level);
+        const int32_t exponent = t->row_sums[i / f->size].exponent;
+        assert_int_equal(fixed_point_integer(weight, fixed_point_power(exponent)), tables_texel_weight(t, &at));
+    }
+}
+
+static void weights_of_texels_follow_from_their_radiance(void **state)
+{
+    (void)state;
+    static const helio_weighting all[] = {HELIO_WEIGHTING_SOLID_ANGLE, HELIO_WEIGHTING_PAPER,
+                                          HELIO_WEIGHTING_COMPENSATED};
+    static const uint32_t sizes[] = {1, 2, 7, 33, 64};
+    for (size_t w = 0; w < sizeof all / sizeof *all; w++)
+        for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++)
+            for (map_kind kind = 0; kind < MAPS; kind++) {
+                fixture f = make_fixture(kind, sizes[s], all[w]);
+                check_weights_of_texels(&f);
+                destroy_fixture(&f);
+            }
+}
+
 static void density_is_equation_1_of_the_paper(void **state)
 {
     (void)state;
@@ -843,6 +877,7 @@ int main(void)
         cmocka_unit_test(a_map_without_extremes_is_stored_to_six_digits),
         cmocka_unit_test(flux_is_the_integral_of_luminance),
         cmocka_unit_test(densities_integrate_to_one_over_each_face),
+        cmocka_unit_test(weights_of_texels_follow_from_their_radiance),
         cmocka_unit_test(density_is_equation_1_of_the_paper),
         cmocka_unit_test(inversion_leads_back_to_where_it_came_from),
         cmocka_unit_test(drawn_directions_lead_back_to_their_numbers),

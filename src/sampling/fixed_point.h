@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdint.h>
+#include <string.h>
 
 /* The exponent e for which the largest weight x 2^e is below 2^bits, and nearly reaches it. At most 126, so that 2^e is
  * a normal float and a weight that a machine might flush to zero comes out as 0 or 1 in either case. */
@@ -15,6 +16,15 @@ static inline int fixed_point_exponent(float largest, int bits)
     int exponent = 0;
     frexpf(largest, &exponent);
     return bits - exponent < 126 ? bits - exponent : 126;
+}
+
+/* 2^exponent, by its bits: exponents are those of fixed_point_exponent(). */
+static inline float fixed_point_power(int32_t exponent)
+{
+    const int32_t bits = (exponent + 127) * (1 << 23);
+    float power;
+    memcpy(&power, &bits, sizeof power);
+    return power;
 }
 
 /* A weight as an integer: rounded, and at least 1 for one above 0, however small. */

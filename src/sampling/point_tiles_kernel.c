@@ -49,8 +49,8 @@ typedef struct group_lobes {
     alignas(64) float gain[TILE_GROUPS];          /* light of all in relation to the light that they leave */
     alignas(64) float weight[TILE_GROUPS];        /* light x BRDF x cosine */
     alignas(64) float specular_part[TILE_GROUPS]; /* of that, the specular lobe's */
-    alignas(64) float wholes[TILE_GROUP];         /* of tiles that are weighed by themselves: sums, over all such groups, of
-                                                     their weights if BRDF samples left nothing out */
+    alignas(64) float wholes[TILE_GROUP]; /* of tiles that are weighed by themselves: sums, over all such groups, of
+                                             their weights if BRDF samples left nothing out */
 } group_lobes;
 
 /* All groups, as there are no more than a few registers of them. The light of a group is as wide as the directions of
@@ -149,26 +149,35 @@ static inline __attribute__((always_inline)) void weigh_groups(helio_material_ki
     }
 }
 
-/* See tables_kernel.c for why by its bits. */
-static float largest_of(const float *weights, uint32_t count)
+/* See tables_kernel.c for why by its bits. Of a few registers side by side, so that none waits for the one before. */
+static float largest_of(const float *weights)
 {
-    int32_t largest_bits = 0;
+    enum { LANES = 64 };
+    int32_t lanes[LANES] = {0}, largest_bits = 0;
+    for (uint32_t first = 0; first < TILES_MOST; first += LANES)
+#pragma omp simd
+        for (uint32_t i = 0; i < LANES; i++) {
+            int32_t bits = bits_of_float(weights[first + i]);
+            lanes[i] = bits > lanes[i] ? bits : lanes[i];
+        }
 #pragma omp simd reduction(max : largest_bits)
-    for (uint32_t i = 0; i < count; i++) {
-        int32_t bits = bits_of_float(weights[i]);
-        largest_bits = bits > largest_bits ? bits : largest_bits;
-    }
+    for (uint32_t i = 0; i < LANES; i++)
+        largest_bits = lanes[i] > largest_bits ? lanes[i] : largest_bits;
     return float_of_bits(largest_bits);
 }
 
-static void sum_groups(const float *weights, float factor, point_tiles *p)
+static void sum_groups(const group_lobes *groups, const float *weights, float factor, point_tiles *p)
 {
     uint32_t sum = 0;
     for (uint32_t group = 0; group < TILE_GROUPS; group++) {
-        const size_t first = (size_t)group * TILE_GROUP;
+        uint32_t *integers = p->weights + (size_t)group * TILE_GROUP;
         p->sums[group] = sum;
-        fixed_point_quantise(weights + first, TILE_GROUP, factor, p->weights + first);
-        sum = fixed_point_total(p->weights + first, TILE_GROUP, sum);
+        if (!groups->is_taken[group]) {
+            memset(integers, 0, TILE_GROUP * sizeof *integers);
+            continue;
+        }
+        fixed_point_quantise(weights + (size_t)group * TILE_GROUP, TILE_GROUP, factor, integers);
+        sum = fixed_point_total(integers, TILE_GROUP, sum);
     }
     p->sums[TILE_GROUPS] = p->total = sum;
 }
@@ -190,9 +199,9 @@ void KERNEL(weigh_point)(const tiles *t, const tile_lobe *lobe, point_tiles *p)
         weigh_groups(HELIO_MATERIAL_PHONG, t, lobe, &groups, weights);
     else
         weigh_groups(HELIO_MATERIAL_GGX, t, lobe, &groups, weights);
-    const int exponent = fixed_point_exponent(largest_of(weights, TILES_MOST), tables_summand_bits(t->count));
+    const int exponent = fixed_point_exponent(largest_of(weights), tables_summand_bits(t->count));
     const float factor = ldexpf(1.0f, exponent);
-    sum_groups(weights, factor, p);
+    sum_groups(&groups, weights, factor, p);
     const float whole = find_whole(p, factor, &groups), light = (float)p->total;
     p->brightness = ldexpf(light, -exponent);
     p->left = whole > light ? 1.0f - light / whole : 0.0f;
@@ -222,7 +231,11 @@ static void choose_tiles(const normal_bins *bins, const point_tiles *p, uint32_t
                          uint32_t count, uint32_t seed, tile_draw *draws)
 {
     static const uint8_t runs[TILE_RUNS + 1] = {0, 16, 32, 48, 64, 80, 96};
-    static const uint8_t groups[TILE_GROUPS] = {0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26,27,28,29,30,31,32,33,34,35,36,37,38,39,40,41,42,43,44,45,46,47,48,49,50,51,52,53,54,55,56,57,58,59,60,61,62,63,64,65,66,67,68,69,70,71,72,73,74,75,76,77,78,79,80,81,82,83,84,85,86,87,88,89,90,91,92,93,94,95};
+    static const uint8_t groups[TILE_GROUPS] = {
+        0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23,
+        24, 25, 26, 27, 28, 29, 30, 31, 32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43, 44, 45, 46, 47,
+        48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 64, 65, 66, 67, 68, 69, 70, 71,
+        72, 73, 74, 75, 76, 77, 78, 79, 80, 81, 82, 83, 84, 85, 86, 87, 88, 89, 90, 91, 92, 93, 94, 95};
     const tile_tree tree = {runs, groups, p->sums, p->weights, bins->list_starts};
     tile_tree_draw(&tree, true, samples, first, count, seed, draws);
     for (uint32_t i = 0; i < count; i++)

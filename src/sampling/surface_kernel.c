@@ -31,10 +31,12 @@ static inline __attribute__((always_inline)) void draw_directions(helio_material
 /* Where each direction meets the cube. */
 typedef struct texel_list {
     uint32_t face[BLOCK_SAMPLES], row[BLOCK_SAMPLES], column[BLOCK_SAMPLES];
+    uint32_t index[BLOCK_SAMPLES];    /* of all texels */
+    uint32_t mirrored[BLOCK_SAMPLES]; /* of the solid angle, see texel_weight.h */
     float u[BLOCK_SAMPLES], v[BLOCK_SAMPLES];
-    float solid_angle[BLOCK_SAMPLES]; /* relative, see texel_weight.h */
-    int32_t exponent[BLOCK_SAMPLES];  /* of the row */
-    float unit[BLOCK_SAMPLES];        /* of gathering_unit_density() */
+    float solid_angle[BLOCK_SAMPLES];
+    int32_t exponent[BLOCK_SAMPLES]; /* of the row */
+    float unit[BLOCK_SAMPLES];       /* of gathering_unit_density() */
 } texel_list;
 
 static void find_texels(const gathering *g, uint32_t count, const float *restrict x, const float *restrict y,
@@ -47,8 +49,11 @@ static void find_texels(const gathering *g, uint32_t count, const float *restric
         texels->face[i] = at.face;
         texels->u[i] = at.u;
         texels->v[i] = at.v;
-        texels->row[i] = cube_texel(at.v, size);
-        texels->column[i] = cube_texel(at.u, size);
+        const uint32_t row = cube_texel(at.v, size), column = cube_texel(at.u, size);
+        texels->row[i] = row;
+        texels->column[i] = column;
+        texels->index[i] = (at.face * size + row) * size + column;
+        texels->mirrored[i] = texel_mirrored(size, row, column);
     }
 }
 
@@ -58,10 +63,11 @@ static inline __attribute__((always_inline)) void fetch_ahead(const gathering *g
                                                               const texel_list *texels)
 {
     for (uint32_t i = 0; i < count; i++) {
-        const float *rgb = environment_texel(g->environment, texels->face[i], texels->row[i], texels->column[i]);
+        const float *rgb = g->environment->cube + 3 * (size_t)texels->index[i];
         __builtin_prefetch(rgb);
         if (((uintptr_t)rgb & 63) > 52)
             __builtin_prefetch(rgb + 2);
+        __builtin_prefetch(g->environment->solid_angle + texels->mirrored[i]);
     }
 }
 
@@ -71,29 +77,43 @@ static void look_up(const gathering *g, uint32_t count, texel_list *texels, samp
     float(*to)[BLOCK_STRIDE] = block->samples;
     for (uint32_t i = 0, k = block->count; i < count; i++, k++) {
         const face_place at = {texels->face[i], texels->row[i], texels->column[i], texels->u[i], texels->v[i]};
-        const texel_weighting weighting = texel_weighting_at(g->pools->tables, &at);
-        const float *rgb = environment_texel(g->environment, at.face, at.row, at.column);
+        const float *rgb = g->environment->cube + 3 * (size_t)texels->index[i];
         to[SAMPLE_RED][k] = rgb[0];
         to[SAMPLE_GREEN][k] = rgb[1];
         to[SAMPLE_BLUE][k] = rgb[2];
-        texels->solid_angle[i] = weighting.relative_solid_angle;
-        texels->exponent[i] = weighting.exponent;
+        texels->solid_angle[i] = g->environment->solid_angle[texels->mirrored[i]];
+        texels->exponent[i] = g->pools->tables->row_sums[(size_t)at.face * g->environment->size + at.row].exponent;
         texels->unit[i] = gathering_unit_density(g, &at);
     }
 }
 
 /* What the tables know of a texel follows from its radiance, so that they, in no near cache either, are left alone. */
-static inline __attribute__((always_inline)) void find_densities(texel_weight_kind kind, float level, uint32_t count,
-                                                                 const texel_list *restrict texels,
+static inline __attribute__((always_inline)) void find_densities(texel_weight_kind kind, const helio_tables *tables,
+                                                                 uint32_t count, const texel_list *restrict texels,
                                                                  const float *restrict red, float *restrict density)
 {
     const float *green = red + BLOCK_STRIDE, *blue = green + BLOCK_STRIDE;
+    const float level = tables->level, quarter_texels = 0.25f * (float)tables->size * (float)tables->size;
 #pragma omp simd
     for (uint32_t i = 0; i < count; i++) {
-        const uint32_t weight = texel_weight_integer(kind, (vec3){red[i], green[i], blue[i]}, level,
-                                                     texels->solid_angle[i], texels->exponent[i]);
-        density[i] = face_place_density(texels->u[i], texels->v[i], weight, texels->unit[i]);
+        const float relative = kind == WEIGHT_LUMINANCE ? 1.0f : texels->solid_angle[i] * quarter_texels;
+        const float weight = texel_weight(kind, (vec3){red[i], green[i], blue[i]}, relative, level);
+        const uint32_t integer = fixed_point_integer(weight, fixed_point_power(texels->exponent[i]));
+        density[i] = face_place_density(texels->u[i], texels->v[i], integer, texels->unit[i]);
     }
+}
+
+static void weigh_texels(const gathering *g, uint32_t count, const texel_list *texels, sample_block *block)
+{
+    const helio_tables *tables = g->pools->tables;
+    const float *red = block->samples[SAMPLE_RED] + block->count;
+    float *density = block->samples[SAMPLE_DENSITY] + block->count;
+    if (tables->weighting == HELIO_WEIGHTING_PAPER)
+        find_densities(WEIGHT_LUMINANCE, tables, count, texels, red, density);
+    else if (tables->level > 0.0f)
+        find_densities(WEIGHT_FLUX_ABOVE, tables, count, texels, red, density);
+    else
+        find_densities(WEIGHT_FLUX, tables, count, texels, red, density);
 }
 
 void KERNEL(draw_surface)(const gathering *g, uint32_t first, uint32_t count, sample_block *block)
@@ -110,11 +130,6 @@ void KERNEL(draw_surface)(const gathering *g, uint32_t first, uint32_t count, sa
     find_texels(g, count, x, y, z, &texels);
     fetch_ahead(g, count, &texels);
     look_up(g, count, &texels, block);
-    const float level = g->pools->tables->level, *red = block->samples[SAMPLE_RED] + block->count;
-    float *density = block->samples[SAMPLE_DENSITY] + block->count;
-    if (level > 0.0f)
-        find_densities(WEIGHT_FLUX_ABOVE, level, count, &texels, red, density);
-    else
-        find_densities(WEIGHT_FLUX, 0.0f, count, &texels, red, density);
+    weigh_texels(g, count, &texels, block);
     block->count += count;
 }

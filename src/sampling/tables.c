@@ -253,7 +253,9 @@ uint32_t tables_invert(const uint32_t *sums, uint32_t count, uint32_t x, uint32_
     return low;
 }
 
-bool tables_sample(const helio_tables *tables, uint32_t face, uint32_t x, uint32_t y, helio_table_sample *sample)
+/* probability: of the face. */
+static bool sample_face(const helio_tables *tables, uint32_t face, float probability, uint32_t x, uint32_t y,
+                        helio_table_sample *sample)
 {
     face_table table = tables_face(tables, face);
     uint32_t size = table.size, row_fraction, column_fraction;
@@ -262,8 +264,16 @@ bool tables_sample(const helio_tables *tables, uint32_t face, uint32_t x, uint32
     uint32_t row = tables_invert(table.marginal, size, y, &row_fraction);
     uint32_t column = tables_invert(table.rows + (size_t)row * (size + 1), size, x, &column_fraction);
     face_place at = tables_place(size, face, row, row_fraction, column, column_fraction);
-    tables_sample_at(tables, &at, tables_density(tables, &at), sample);
+    tables_sample_at(tables, &at,
+                     face_place_density(at.u, at.v, tables_texel_weight(tables, &at),
+                                        tables_unit_density(tables, &at) * probability),
+                     sample);
     return true;
+}
+
+bool tables_sample(const helio_tables *tables, uint32_t face, uint32_t x, uint32_t y, helio_table_sample *sample)
+{
+    return sample_face(tables, face, 1.0f, x, y, sample);
 }
 
 bool tables_sample_whole(const helio_tables *tables, uint32_t x, uint32_t y, helio_table_sample *sample)
@@ -271,10 +281,7 @@ bool tables_sample_whole(const helio_tables *tables, uint32_t x, uint32_t y, hel
     if (tables->faces[CUBE_FACES] == 0)
         return false;
     uint32_t rest, face = tables_invert(tables->faces, CUBE_FACES, y, &rest);
-    if (!tables_sample(tables, face, x, rest, sample))
-        return false;
-    sample->density *= tables_face_probability(tables, face);
-    return true;
+    return sample_face(tables, face, tables_face_probability(tables, face), x, rest, sample);
 }
 
 static uint32_t fraction_from_unit(float x)
@@ -294,7 +301,7 @@ float helio_tables_density(const helio_tables *tables, const float direction[3],
     const face_place at = {meeting.face, row, column, meeting.u, meeting.v};
     if (face != NULL)
         *face = at.face;
-    return tables_density(tables, &at);
+    return face_place_density(at.u, at.v, tables_texel_weight(tables, &at), tables_unit_density(tables, &at));
 }
 
 uint64_t helio_tables_frame(const helio_tables *tables)

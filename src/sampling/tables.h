@@ -84,12 +84,6 @@ static inline float tables_unit_density(const helio_tables *tables, const face_p
     return tables->row_densities[(size_t)at->face * tables->size + at->row];
 }
 
-/* Density, 1/sr, of a direction given its face, from the stored integers. */
-static inline float tables_density(const helio_tables *tables, const face_place *at)
-{
-    return face_place_density(at->u, at->v, tables_texel_weight(tables, at), tables_unit_density(tables, at));
-}
-
 /* Probability that LIGHT gives to a face. */
 static inline float tables_face_probability(const helio_tables *tables, uint32_t face)
 {

@@ -32,30 +32,14 @@ static inline float texel_weight(texel_weight_kind kind, vec3 radiance, float re
     return weight > least ? weight : least;
 }
 
-/* What the weights of a texel are made of besides its radiance. */
-typedef struct texel_weighting {
-    float relative_solid_angle; /* 1 where luminance alone counts */
-    int32_t exponent;           /* of its row */
-} texel_weighting;
-
-/* The solid angle is that of the mirrored texel in one quarter of the face, which is small enough for a near cache. */
-static inline texel_weighting texel_weighting_at(const helio_tables *tables, const face_place *at)
+/* Index, in solid angles [R][R], of the texel in one quarter of the face that mirrors this one: the quarter is small
+ * enough for a near cache. */
+static inline uint32_t texel_mirrored(uint32_t size, uint32_t row, uint32_t column)
 {
-    const uint32_t size = tables->size, last = size - 1;
-    const uint32_t row = at->row < last - at->row ? at->row : last - at->row;
-    const uint32_t column = at->column < last - at->column ? at->column : last - at->column;
-    const float quarter_texels = 0.25f * (float)size * (float)size;
-    const float solid_angle = tables->environment->solid_angle[(size_t)row * size + column];
-    return (texel_weighting){tables->weighting == HELIO_WEIGHTING_PAPER ? 1.0f : solid_angle * quarter_texels,
-                             tables->row_sums[(size_t)at->face * size + at->row].exponent};
-}
-
-/* tables_texel_weight() of the texel that has this radiance. kind: LUMINANCE may be taken for FLUX. */
-static inline uint32_t texel_weight_integer(texel_weight_kind kind, vec3 radiance, float level,
-                                            float relative_solid_angle, int32_t exponent)
-{
-    const float factor = float_of_bits((exponent + 127) * (1 << 23));
-    return fixed_point_integer(texel_weight(kind, radiance, relative_solid_angle, level), factor);
+    const uint32_t last = size - 1;
+    row = row < last - row ? row : last - row;
+    column = column < last - column ? column : last - column;
+    return row * size + column;
 }
 
 #endif

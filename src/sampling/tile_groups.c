@@ -3,7 +3,7 @@
 
 #include "sampling/tiles.h"
 
-_Static_assert((int)TILE_GROUPS * (int)TILE_GROUP == (int)TILES_MOST, "each tile is in a group");
+_Static_assert((int)TILES_MOST / (int)TILE_GROUP == (int)TILE_GROUPS, "each tile is in a group");
 
 static vec3 centre_of(const tiles *t, uint32_t position)
 {

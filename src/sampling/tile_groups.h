@@ -22,8 +22,8 @@ typedef struct tile_groups {
     alignas(64) float x[TILE_GROUPS]; /* direction to the middle */
     alignas(64) float y[TILE_GROUPS];
     alignas(64) float z[TILE_GROUPS];
-    alignas(64) float edge[TILE_GROUPS];  /* of a group whose cosine to a normal is at most the negative of this, no tile
-                                             reaches above the horizon */
+    alignas(64) float edge[TILE_GROUPS]; /* of a group whose cosine to a normal is at most the negative of this, no tile
+                                            reaches above the horizon */
     alignas(64) float slope[TILE_GROUPS]; /* 1 / (4 edge) */
     /* Of a frame. */
     alignas(64) float light[TILE_GROUPS];   /* sum of tiles.light */

@@ -40,7 +40,7 @@ typedef struct tiles {
                                              it that even light would need; small where there is a sun */
     tile_colours colours;
     tile_groups groups;
-    uint32_t *sums;                            /* [count][stride]: prefix sums over the rows of a tile */
+    uint32_t *sums;           /* [count][stride]: prefix sums over the rows of a tile */
     float *segment_densities; /* [6][R][T]: what a unit of weight in this row of a tile adds to the density given the
                                  tile, as row_densities of the tables do */
 } tiles;
