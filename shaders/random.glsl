@@ -30,21 +30,9 @@ uint pascal_transform(uint x)
     return x ^ (x >> 16);
 }
 
-uint third_dimension(uint index)
-{
-    uint result = 0u, v = 1u, next = 3u;
-    for (; index != 0u; index >>= 1) {
-        result ^= (index & 1u) != 0u ? v : 0u;
-        uint after = next ^ v ^ (v << 2);
-        v = next;
-        next = after;
-    }
-    return result;
-}
-
 uint sobol_reversed(uint index, uint dimension)
 {
-    return dimension == 0u ? index : dimension == 1u ? pascal_transform(index) : third_dimension(index);
+    return dimension == 0u ? index : pascal_transform(index);
 }
 
 uint owen_scramble_reversed(uint x, uint seed)
@@ -65,4 +53,11 @@ uint dimension_seed(uint seed, uint dimension)
 uint scrambled_sobol(uint index, uint dimension, uint seed)
 {
     return owen_scramble_reversed(sobol_reversed(index, dimension), dimension_seed(seed, dimension));
+}
+
+// Somewhere in stratum `index` of `count`, below 1.
+float stratified_unit(uint index, uint count, uint seed)
+{
+    precise float x = (float(index) + unit_float(hash(seed + index))) * (1.0 / float(count));
+    return min(x, 0.99999994);
 }

@@ -43,8 +43,8 @@ struct surface_sample {
 surface_sample draw_surface_sample(prepared_point p, uint i)
 {
     const float u = unit_float(scrambled_sobol(i, 0u, p.surface_seed));
-    const float v = unit_float(scrambled_sobol(i, 1u, p.surface_seed));
-    const float lobe = unit_float(scrambled_sobol(i, 2u, p.surface_seed));
+    const float v = stratified_unit(i, p.surface_count, dimension_seed(p.surface_seed, 2u));
+    const float lobe = unit_float(scrambled_sobol(i, 1u, p.surface_seed));
     const vec3 direction = SURFACE == LAYOUT_SURFACE_COSINE ? cosine_sample(p.surface.normal, u, v)
                                                             : brdf_sample(p.surface, lobe, u, v);
     const float cosine = dot(p.surface.normal, direction);

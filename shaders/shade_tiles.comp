@@ -189,12 +189,12 @@ vec2 weigh(brdf b, tile_lobe lobe, uint position)
     const vec4 tile = STATE.tiles.at[position];
     const uint group = position / LAYOUT_TILE_GROUP;
     const float cosine = dot(b.normal, tile.xyz), soft = soft_cosine(cosine, STATE.tile_edge);
-    float specular = lobes[group];
-    if (specular < 0.0)
-        specular = specular_at(b, lobe, tile.xyz, lobe.width, cosine, soft) /
-                   (1.0 + lobe.to_surface * STATE.tile_spreads.at[position]);
-    const float weight = tile.w > 0.0 ? tile.w * soft * (lobe.diffuse + specular) : 0.0;
-    return vec2(weight, weight * gains[group]);
+    const float light = tile.w > 0.0 ? tile.w * soft : 0.0;
+    if (lobes[group] >= 0.0)
+        return light * (lobe.diffuse + lobes[group]) * vec2(1.0, gains[group]);
+    const float all = specular_at(b, lobe, tile.xyz, lobe.width, cosine, soft);
+    const float specular = all / (1.0 + lobe.to_surface * STATE.tile_spreads.at[position]);
+    return light * (lobe.diffuse + vec2(specular, all));
 }
 
 // Fills in the sums of `count` tiles and returns that of all. left: part of the light that is left to BRDF samples.

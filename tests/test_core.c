@@ -495,28 +495,59 @@ static void scrambled_coordinates_are_uniform_over_seeds(void **state)
     for (int i = 0; i < BINS; i++)
         expected[i] = (double)SEEDS / BINS;
     for (size_t i = 0; i < sizeof indices / sizeof *indices; i++)
-        for (uint32_t dimension = 0; dimension < 3; dimension++) {
+        for (uint32_t dimension = 0; dimension < 2; dimension++) {
             memset(observed, 0, sizeof observed);
             for (uint32_t seed = 0; seed < SEEDS; seed++)
                 observed[scrambled_sobol(indices[i], dimension, seed) >> 24]++;
             double tail = chi_square_tail(observed, expected, BINS, 1);
-            if (tail < 1e-6 / 27)
+            if (tail < 1e-6 / 18)
                 fail_msg("point %u, dimension %u is not uniform: p = %g", indices[i], dimension, tail);
         }
 }
 
-static void third_dimension_is_stratified(void **state)
+/* Cells of 2^-a x 2^-b x 2^-c, a + b + c = k. */
+static bool is_net_of_three(unsigned k, unsigned a, unsigned b, uint32_t seed)
+{
+    bool taken[1024] = {false};
+    const uint32_t count = 1u << k;
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t x = (uint32_t)((uint64_t)scrambled_sobol(i, 0, seed) >> (32 - a));
+        const uint32_t y = (uint32_t)((uint64_t)scrambled_sobol(i, 1, seed) >> (32 - b));
+        const uint32_t z = (uint32_t)ldexpf(stratified_unit(i, 1.0f / (float)count, seed), (int)(k - a - b));
+        const uint32_t cell = (((x << b) | y) << (k - a - b)) | z;
+        if (taken[cell])
+            return false;
+        taken[cell] = true;
+    }
+    return true;
+}
+
+static void sets_with_strata_are_nets(void **state)
 {
     (void)state;
-    for (unsigned k = 0; k <= 8; k++)
-        for (uint32_t block = 0; block < 16; block++) {
-            bool taken[256] = {false};
-            for (uint32_t i = 0; i < 1u << k; i++) {
-                uint32_t cell = (uint32_t)((uint64_t)scrambled_sobol((block << k) + i, 2, 9) >> (32 - k));
-                assert_false(taken[cell]);
-                taken[cell] = true;
-            }
+    for (unsigned k = 0; k <= 10; k++)
+        for (unsigned a = 0; a <= k; a++)
+            for (unsigned b = 0; a + b <= k; b++)
+                for (uint32_t seed = 0; seed < 4; seed++)
+                    assert_true(is_net_of_three(k, a, b, hash(seed)));
+}
+
+/* One in each, over all of which they are uniform. */
+static void strata_hold_one_point_each(void **state)
+{
+    (void)state;
+    enum { MOST = 300, BINS = 64 };
+    double observed[BINS] = {0}, expected[BINS], sum = 0;
+    for (uint32_t count = 1; count <= MOST; count++)
+        for (uint32_t i = 0; i < count; i++) {
+            const float x = stratified_unit(i, 1.0f / (float)count, count);
+            assert_true(x >= 0 && x < 1 && fabs((double)x * count - (i + 0.5)) <= 0.5 + 1e-4);
+            observed[(int)(x * BINS)]++, sum++;
         }
+    for (int i = 0; i < BINS; i++)
+        expected[i] = sum / BINS;
+    assert_true(chi_square_tail(observed, expected, BINS, 1) > 1e-6);
+    assert_true(stratified_unit(1023, 1.0f / 1024.0f, 5) < 1.0f);
 }
 
 /* ---- vectors ---- */
@@ -966,7 +997,8 @@ int main(void)
         cmocka_unit_test(sobol_points_are_nets_in_every_aligned_block),
         cmocka_unit_test(scrambled_points_are_nets_in_every_aligned_block),
         cmocka_unit_test(scrambled_coordinates_are_uniform_over_seeds),
-        cmocka_unit_test(third_dimension_is_stratified),
+        cmocka_unit_test(sets_with_strata_are_nets),
+        cmocka_unit_test(strata_hold_one_point_each),
         cmocka_unit_test(tangent_frames_are_orthonormal_and_right_handed),
         cmocka_unit_test(luminance_of_white_is_one),
         cmocka_unit_test(clock_counts_seconds),

@@ -595,6 +595,7 @@ static void a_matte_furnace_returns_its_albedo(void **state)
 static void other_furnaces_return_their_quadrature_and_no_more_than_one(void **state)
 {
     (void)state;
+    enum { PASSES = 800 }; /* of which the mean varies by 8e-4 at most */
     helio_context *context = make_context(1, NULL);
     static test_map map = {.name = "furnace", .size = 16};
     for (size_t i = 0; i < 6 * 256 * 3; i++)
@@ -604,12 +605,12 @@ static void other_furnaces_return_their_quadrature_and_no_more_than_one(void **s
     make_points(points);
     for (int i = 0; i < POINTS; i++) {
         double sum = 0, exact = integrate(&w, &points[i], NULL).radiance;
-        for (uint32_t pass = 0; pass < 200; pass++) {
+        for (uint32_t pass = 0; pass < PASSES; pass++) {
             float radiance[3];
             points[i].seed = pass;
             assert_ok(helio_pools_draw(w.pools, 3, pass));
             assert_ok(helio_estimate(w.pools, &points[i], NULL, radiance, NULL));
-            sum += (double)radiance[0] / 200;
+            sum += (double)radiance[0] / PASSES;
         }
         assert_float_equal(sum, exact, 3e-3);
         assert_true(sum <= 1.0 + 3e-3);

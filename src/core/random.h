@@ -48,27 +48,14 @@ static inline uint32_t pascal_transform(uint32_t x)
     return x ^ (x >> 16);
 }
 
-/* Direction numbers of the third dimension (primitive polynomial x^2 + x + 1 with m = 1, 3), lowest bit first. */
-static inline uint32_t third_dimension(uint32_t index)
-{
-    uint32_t result = 0, v = 1u, next = 3u;
-    for (; index != 0; index >>= 1) {
-        result ^= index & 1u ? v : 0u;
-        uint32_t after = next ^ v ^ (v << 2);
-        v = next;
-        next = after;
-    }
-    return result;
-}
-
 /* sobol() with its bits reversed, which is how scrambling wants it. */
 static inline uint32_t sobol_reversed(uint32_t index, uint32_t dimension)
 {
-    return dimension == 0 ? index : dimension == 1 ? pascal_transform(index) : third_dimension(index);
+    return dimension == 0 ? index : pascal_transform(index);
 }
 
-/* Coordinate `dimension` (0, 1 or 2) of point `index` of Sobol's sequence, as a fraction of 2^32. The first two
- * dimensions are a (0,2)-sequence: every aligned block of 2^k points has one point in each elementary interval. */
+/* Coordinate `dimension` (0 or 1) of point `index` of Sobol's sequence, as a fraction of 2^32. It is a (0,2)-sequence:
+ * every aligned block of 2^k points has one point in each elementary interval. */
 static inline uint32_t sobol(uint32_t index, uint32_t dimension)
 {
     return reverse_bits(sobol_reversed(index, dimension));
@@ -97,6 +84,16 @@ static inline uint32_t dimension_seed(uint32_t seed, uint32_t dimension)
 static inline uint32_t scrambled_sobol(uint32_t index, uint32_t dimension, uint32_t seed)
 {
     return owen_scramble_reversed(sobol_reversed(index, dimension), dimension_seed(seed, dimension));
+}
+
+/* A third coordinate, below 1, for sets whose size is known: somewhere in stratum `index` of as many as there are
+ * points. With the sequence's two, 2^k points are a (0,k,3)-net; and sets of any size, of which the sequence alone
+ * makes nets only where it is a power of two, are even in this one. A point alone is not uniform, all of them together
+ * are. */
+static inline float stratified_unit(uint32_t index, float per_point, uint32_t seed)
+{
+    const float x = ((float)(int32_t)index + unit_float(hash(seed + index))) * per_point;
+    return x < 0x1.fffffep-1f ? x : 0x1.fffffep-1f;
 }
 
 #endif

@@ -39,15 +39,9 @@ static helio_status resolve_desc(const helio_pools_desc *given, helio_pools_desc
 static helio_status allocate_arrays(helio_pools *pools)
 {
     helio_context *context = pools->tables->environment->context;
-    uint32_t limit = helio_pools_sample_limit(pools);
     pools->stride = (size_t)pools->count * pools->pool_length + POOL_PADDING;
     pools->samples = context_allocate(context, pools->stride, POOL_ARRAYS * sizeof(float));
-    pools->third_dimension = context_allocate(context, limit, sizeof *pools->third_dimension);
-    if (pools->samples == NULL || pools->third_dimension == NULL)
-        return HELIO_ERR_MEMORY;
-    for (uint32_t i = 0; i < limit; i++)
-        pools->third_dimension[i] = sobol_reversed(i, 2);
-    return HELIO_OK;
+    return pools->samples != NULL ? HELIO_OK : HELIO_ERR_MEMORY;
 }
 
 static void choose_sizes(helio_pools *pools, const helio_pools_desc *desc)
@@ -105,7 +99,6 @@ void helio_pools_destroy(helio_pools *pools)
     helio_context *context = pools->tables->environment->context;
     control_destroy(pools->control);
     normal_bins_destroy(pools->bins);
-    context_release(context, pools->third_dimension);
     context_release(context, pools->samples);
     context_release(context, pools);
 }

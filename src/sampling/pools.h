@@ -51,7 +51,6 @@ struct helio_pools {
      * Directions in the map's space, radiance, density given the pool (1/sr). */
     float *samples;
     size_t stride;
-    uint32_t *third_dimension; /* [M / 8]: sobol_reversed(i, 2), for which there is no closed form */
 };
 
 /* One of the arrays of a pool: [pool_length]. */

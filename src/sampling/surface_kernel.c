@@ -6,21 +6,21 @@
 #include "sampling/kernels.h"
 #include "sampling/texel_weight.h"
 
-/* Directions of samples first ... first + count - 1, from scrambled Sobol' points of the point's own. */
+/* Directions of samples first ... first + count - 1 of the point's own set of scrambled points. */
 static inline __attribute__((always_inline)) void draw_directions(helio_material_kind kind, const gathering *g,
                                                                   uint32_t first, uint32_t count, float *restrict x,
                                                                   float *restrict y, float *restrict z)
 {
     const brdf proposal = g->proposal;
     const brdf_axes axes = g->proposal_axes;
-    const uint32_t *third = g->pools->third_dimension + first;
-    const uint32_t seed_u = dimension_seed(g->surface_seed, 0), seed_v = dimension_seed(g->surface_seed, 1);
-    const uint32_t seed_lobe = dimension_seed(g->surface_seed, 2);
+    const uint32_t seed_u = dimension_seed(g->surface_seed, 0), seed_lobe = dimension_seed(g->surface_seed, 1);
+    const uint32_t seed_v = dimension_seed(g->surface_seed, 2);
+    const float per_sample = 1.0f / (float)g->counts.realised[TECHNIQUE_SURFACE];
 #pragma omp simd
     for (uint32_t i = 0; i < count; i++) {
         float u = unit_float(owen_scramble_reversed(first + i, seed_u));
-        float v = unit_float(owen_scramble_reversed(pascal_transform(first + i), seed_v));
-        float lobe = unit_float(owen_scramble_reversed(third[i], seed_lobe));
+        float v = stratified_unit(first + i, per_sample, seed_v);
+        float lobe = unit_float(owen_scramble_reversed(pascal_transform(first + i), seed_lobe));
         vec3 direction = brdf_sample_of(kind, &proposal, &axes, lobe, u, v);
         x[i] = direction.x;
         y[i] = direction.y;
