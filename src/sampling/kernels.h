@@ -28,6 +28,7 @@ struct resampling_space;
 struct view_group;
 struct sky_light;
 struct sky_row;
+struct texel_moments;
 struct texel_rows;
 
 typedef struct kernel_set {
@@ -40,8 +41,11 @@ typedef struct kernel_set {
      * same bits with every instruction set. */
     uint32_t (*weigh_tiles)(const tiles *t, const normal_bin *bin, uint32_t *sums);
 
-    /* Adds rows of texels to sums over their columns. */
-    void (*add_texels)(const struct texel_rows *texels, struct column_colours *sums);
+    /* The integrals of direction over rows of texels; and adds radiance x these to sums over the columns. rgb:
+     * [rows][count][3], rows `stride` floats apart. */
+    void (*find_moments)(const struct texel_rows *texels, struct texel_moments *moments);
+    void (*add_texels)(const struct texel_rows *texels, const float *rgb, size_t stride,
+                       const struct texel_moments *moments, struct column_colours *sums);
 
     /* The known light of a bin of normals, from that of the tiles. */
     void (*know_bin)(const tiles *t, const normal_bin *bin, struct control_matrix *known);
@@ -123,7 +127,9 @@ _Static_assert(HELIO_LANES <= POOL_PADDING && BLOCK_SAMPLES % HELIO_LANES == 0 &
 
 row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, float level, uint32_t size, uint32_t *sums);
 uint32_t KERNEL(weigh_tiles)(const tiles *t, const normal_bin *bin, uint32_t *sums);
-void KERNEL(add_texels)(const struct texel_rows *texels, struct column_colours *sums);
+void KERNEL(find_moments)(const struct texel_rows *texels, struct texel_moments *moments);
+void KERNEL(add_texels)(const struct texel_rows *texels, const float *rgb, size_t stride,
+                        const struct texel_moments *moments, struct column_colours *sums);
 void KERNEL(know_bin)(const tiles *t, const normal_bin *bin, struct control_matrix *known);
 void KERNEL(mix_hues)(const tiles *t, point_tiles *p);
 void KERNEL(weigh_point)(const tiles *t, const tile_lobe *lobe, point_tiles *p);
