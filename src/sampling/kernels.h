@@ -60,11 +60,11 @@ typedef struct kernel_set {
      * The same bits with every instruction set. */
     void (*draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
 
-    /* Draws the list of a tile anew, unless it is empty. seed: of the tile. Draws samples first ... first + count - 1
-     * of the pool of a bin that is not black from the lists of the tiles. seed: of the pool. The same bits with every
+    /* Draws the list of a tile anew, unless it is empty. seed: of the tile. Draws the pool of a bin that is not black
+     * from the lists of the tiles, and its sums for the control variate. seed: of the pool. The same bits with every
      * instruction set. */
     void (*draw_tile)(normal_bins *bins, const helio_tables *tables, uint32_t position, uint32_t seed);
-    void (*draw_bin)(helio_pools *pools, uint32_t bin, uint32_t first, uint32_t count, uint32_t seed);
+    void (*draw_bin)(helio_pools *pools, uint32_t bin, uint32_t seed);
 
     /* Prepares points for their samples: turns their directions to the map's space, lifts views that graze, and fills
      * in counts and windows. The same bits with every instruction set. */
@@ -135,7 +135,7 @@ void KERNEL(mix_hues)(const tiles *t, point_tiles *p);
 void KERNEL(weigh_point)(const tiles *t, const tile_lobe *lobe, point_tiles *p);
 void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
 void KERNEL(draw_tile)(normal_bins *bins, const helio_tables *tables, uint32_t position, uint32_t seed);
-void KERNEL(draw_bin)(helio_pools *pools, uint32_t bin, uint32_t first, uint32_t count, uint32_t seed);
+void KERNEL(draw_bin)(helio_pools *pools, uint32_t bin, uint32_t seed);
 void KERNEL(prepare_points)(const helio_pools *pools, const helio_estimate_desc *desc, point_block *block);
 void KERNEL(round_counts)(uint32_t samples, point_block *block);
 void KERNEL(sum_light)(const helio_pools *pools, uint32_t samples, const point_block *block, const brdf *surfaces,

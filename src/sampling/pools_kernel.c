@@ -4,7 +4,7 @@
  * step of each after the other, so that they wait for memory together. */
 #include "core/random.h"
 #include "sampling/kernels.h"
-#include "sampling/tile_tree.h"
+#include "sampling/tile_levels.h"
 
 #include <float.h>
 
@@ -169,7 +169,7 @@ static listed_sample list_sample(const tiles *t, uint32_t position, const helio_
 {
     const vec3 centre = {t->x[position], t->y[position], t->z[position]};
     const float towards = dot(centre, vec3_from(sample->direction)), scale = towards / t->colours.brightness[position];
-    listed_sample listed = {.density = sample->density};
+    listed_sample listed = {.direction[3] = towards, .density = sample->density};
     for (int c = 0; c < 3; c++) {
         listed.direction[c] = sample->direction[c];
         listed.radiance[c] = sample->radiance[c];
@@ -194,101 +194,112 @@ void KERNEL(draw_tile)(normal_bins *bins, const helio_tables *tables, uint32_t p
     }
 }
 
-static inline float finite_product(float a, float b)
-{
-    float product = a * b;
-    return product < FLT_MAX ? product : FLT_MAX;
-}
-
-/* The same as store_sample(), for a sample that a tile holds, and the probability of the tile. */
-static void store_listed(helio_pools *pools, uint32_t pool, uint32_t index, const listed_sample *sample,
-                         float probability)
-{
-    float *to = pools_array(pools, pool, SAMPLE_X) + index;
-    const float scale = 1.0f / probability;
-    store_light(to, pools->stride, sample->direction, sample->radiance);
-    to[SAMPLE_DENSITY * pools->stride] = probability * sample->density;
-    to[SAMPLE_WEIGHTED_RED * pools->stride] = finite_product(sample->weighted[0], scale);
-    to[SAMPLE_WEIGHTED_GREEN * pools->stride] = finite_product(sample->weighted[1], scale);
-    to[SAMPLE_WEIGHTED_BLUE * pools->stride] = finite_product(sample->weighted[2], scale);
-}
-
-/* The tree of all tiles as a bin weighs them. */
-typedef struct bin_tree {
-    uint8_t runs[TILE_RUNS + 1], groups[TILE_GROUPS];
-    uint32_t sums[TILE_GROUPS + 1];
-    alignas(64) uint32_t weights[TILES_MOST];
-} bin_tree;
-
-static void make_bin_tree(const normal_bins *bins, uint32_t bin, bin_tree *tree)
-{
-    const uint32_t *sums = normal_bins_sums(bins, bin), count = bins->tiles->count;
-    const uint32_t group_count = bins->tiles->group_count;
-#pragma omp simd
-    for (uint32_t i = 0; i < count; i++)
-        tree->weights[i] = sums[i + 1] - sums[i];
-    for (uint32_t i = count; i < group_count * TILE_GROUP; i++)
-        tree->weights[i] = 0;
-    for (uint32_t i = 0; i < group_count; i++) {
-        tree->groups[i] = (uint8_t)i;
-        tree->sums[i] = sums[i * TILE_GROUP];
-    }
-    tree->sums[group_count] = sums[count];
-    for (uint32_t run = 0; run <= TILE_RUNS; run++)
-        tree->runs[run] = (uint8_t)(run * TILE_RUN < group_count ? run * TILE_RUN : group_count);
-}
-
-/* Adds what a sample stands for, see control.h, to its chunk's sum. */
-static void add_known(const helio_pools *pools, const normal_bin *bin, uint32_t index, uint32_t position,
-                      control_matrix *chunks)
-{
-    const tiles *t = pools->bins->tiles;
-    const vec3 centre = {t->x[position], t->y[position], t->z[position]};
-    const control_line line = control_line_of(bin, dot(bin->centre, centre));
-    const float *sample = pools_array(pools, 0, SAMPLE_X) + index;
-    control_matrix *sum = &chunks[index % pools->pool_length / CONTROL_CHUNK];
-    const vec3 direction = {sample[SAMPLE_X * pools->stride], sample[SAMPLE_Y * pools->stride],
-                            sample[SAMPLE_Z * pools->stride]};
-    const float factors[4] = {line.slope * direction.x, line.slope * direction.y, line.slope * direction.z,
-                              line.offset * dot(centre, direction)};
-    const float light[3] = {sample[SAMPLE_WEIGHTED_RED * pools->stride], sample[SAMPLE_WEIGHTED_GREEN * pools->stride],
-                            sample[SAMPLE_WEIGHTED_BLUE * pools->stride]};
-    for (int row = 0; row < 4; row++)
-        for (int c = 0; c < 3; c++)
-            sum->rows[row][c] += factors[row] * light[c];
-}
+/* Samples of the pool of a bin that are drawn together, in the order in which they are stored. */
+typedef struct bin_samples {
+    alignas(64) uint32_t positions[POOL_RUN_MOST], elements[POOL_RUN_MOST];
+    alignas(64) float probabilities[POOL_RUN_MOST], scales[POOL_RUN_MOST]; /* of the tile given the bin; 1 / that */
+    alignas(64) float slopes[POOL_RUN_MOST], offsets[POOL_RUN_MOST];       /* see control_line */
+} bin_samples;
 
 /* Samples of a run lie in the order of their numbers with the bits reversed, and some of them flipped at random: so
  * each aligned window of a power of two has one of each of that many parts of the run, and any place holds each of the
  * samples with the same probability. */
-static void store_run(helio_pools *pools, uint32_t bin, uint32_t first, uint32_t count, uint32_t flipped,
-                      const tile_draw *draws)
+static void choose_run(const normal_bins *bins, const tile_levels *levels, uint32_t run, uint32_t seed,
+                       uint32_t *positions, uint32_t *elements)
 {
-    const normal_bins *bins = pools->bins;
-    control_matrix *chunks = control_chunks(pools->control, bin);
-    memset(chunks + first / CONTROL_CHUNK, 0, count / CONTROL_CHUNK * sizeof *chunks);
-    for (uint32_t i = 0; i < count; i++) {
-        const tile_draw *draw = &draws[(uint32_t)(((uint64_t)(reverse_bits(i) ^ flipped) * count) >> 32)];
-        store_listed(pools, bin, first + i, &bins->listed[draw->element], (float)draw->weight * bins->shares[bin]);
-        add_known(pools, &bins->bins[bin], bin * pools->pool_length + first + i, draw->position, chunks);
+    alignas(64) uint32_t drawn_positions[POOL_RUN_MOST], drawn_elements[POOL_RUN_MOST];
+    const uint32_t flipped = tile_tree_random(seed, TILE_TREE_ORDER);
+    tile_levels_draw(levels, bins->list_starts, run, seed, drawn_positions, drawn_elements);
+    for (uint32_t i = 0; i < run; i++) {
+        const uint32_t number = (uint32_t)(((uint64_t)(reverse_bits(i) ^ flipped) * run) >> 32);
+        positions[i] = drawn_positions[number];
+        elements[i] = drawn_elements[number];
+        __builtin_prefetch(&bins->listed[elements[i]]);
     }
 }
 
-void KERNEL(draw_bin)(helio_pools *pools, uint32_t bin, uint32_t first, uint32_t count, uint32_t seed)
+static void weigh_samples(const normal_bins *bins, uint32_t bin, const uint32_t *restrict sums, uint32_t count,
+                          bin_samples *restrict samples)
+{
+    const tiles *restrict t = bins->tiles;
+    const normal_bin b = bins->bins[bin];
+    const float share = bins->shares[bin];
+#pragma omp simd
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t tile = samples->positions[i];
+        const float cosine = b.centre.x * t->x[tile] + b.centre.y * t->y[tile] + b.centre.z * t->z[tile];
+        const control_line line = control_line_of(&b, cosine);
+        samples->slopes[i] = line.slope;
+        samples->offsets[i] = line.offset;
+        samples->probabilities[i] = (float)(int32_t)(sums[tile + 1] - sums[tile]) * share; /* below 2^31 */
+        samples->scales[i] = 1.0f / samples->probabilities[i];
+    }
+}
+
+/* What a sample is worth given the bin: weighted is finite here too. */
+static inline void scale_light(const listed_sample *sample, float scale, float light[4])
+{
+    for (int c = 0; c < 4; c++) {
+        const float product = sample->weighted[c] * scale;
+        light[c] = product < FLT_MAX ? product : FLT_MAX;
+    }
+}
+
+/* Adds what a sample stands for, see control.h. */
+static inline void add_known(const listed_sample *sample, float slope, float offset, const float light[4],
+                             control_matrix *sum)
+{
+    const float line[4] = {slope, slope, slope, offset};
+    for (int row = 0; row < 4; row++)
+        for (int c = 0; c < 4; c++)
+            sum->rows[row][c] += line[row] * sample->direction[row] * light[c];
+}
+
+/* The samples of a chunk, and the sums up to its end. */
+static inline void store_chunk(const listed_sample *listed, const bin_samples *samples, uint32_t first, float *to,
+                               size_t stride, const control_matrix *before, control_matrix *after)
+{
+    control_matrix sum = {{{0}}};
+    for (uint32_t i = first; i < first + CONTROL_CHUNK; i++) {
+        const listed_sample *sample = &listed[samples->elements[i]];
+        float light[4];
+        scale_light(sample, samples->scales[i], light);
+        store_light(to + i, stride, sample->direction, sample->radiance);
+        to[SAMPLE_DENSITY * stride + i] = samples->probabilities[i] * sample->density;
+        to[SAMPLE_WEIGHTED_RED * stride + i] = light[0];
+        to[SAMPLE_WEIGHTED_GREEN * stride + i] = light[1];
+        to[SAMPLE_WEIGHTED_BLUE * stride + i] = light[2];
+        add_known(sample, samples->slopes[i], samples->offsets[i], light, &sum);
+    }
+    for (int row = 0; row < 4; row++)
+        for (int c = 0; c < 4; c++)
+            after->rows[row][c] = sum.rows[row][c] + before->rows[row][c];
+}
+
+/* Whole runs, as many as fit. */
+static void draw_runs(helio_pools *pools, uint32_t bin, const tile_levels *levels, uint32_t first, uint32_t count,
+                      uint32_t seed)
 {
     const normal_bins *bins = pools->bins;
     const uint32_t run = pools_run_of_bin(pools);
-    bin_tree own;
-    tile_draw draws[POOL_RUN_MOST] = {{0}}; /* so that analyzers need not follow the tree */
-    make_bin_tree(bins, bin, &own);
-    const tile_tree tree = {own.runs, own.groups, own.sums, own.weights, bins->list_starts};
-    for (uint32_t done = 0; done < count; done += run) {
-        const uint32_t seed_of_run = hash_combine(seed, (first + done) / run);
-        tile_tree_draw(&tree, false, run, 0, run, seed_of_run, draws);
-        for (uint32_t i = 0; i < run; i++)
-            __builtin_prefetch(&bins->listed[draws[i].element]);
-        store_run(pools, bin, first + done, run, tile_tree_random(seed_of_run, TILE_TREE_ORDER), draws);
-    }
+    float *to = pools_array(pools, bin, SAMPLE_X) + first;
+    control_matrix *control = control_sums(pools->control, bin) + first / CONTROL_CHUNK;
+    bin_samples samples;
+    for (uint32_t done = 0; done < count; done += run)
+        choose_run(bins, levels, run, hash_combine(seed, (first + done) / run), samples.positions + done,
+                   samples.elements + done);
+    weigh_samples(bins, bin, levels->tiles, count, &samples);
+    for (uint32_t i = 0; i < count; i += CONTROL_CHUNK, control++)
+        store_chunk(bins->listed, &samples, i, to, pools->stride, control, control + 1);
+}
+
+void KERNEL(draw_bin)(helio_pools *pools, uint32_t bin, uint32_t seed)
+{
+    const uint32_t length = pools->pool_length, most = length < POOL_RUN_MOST ? length : POOL_RUN_MOST;
+    tile_levels levels;
+    tile_levels_make(normal_bins_sums(pools->bins, bin), pools->bins->tiles->count, &levels);
+    for (uint32_t first = 0; first < length; first += most)
+        draw_runs(pools, bin, &levels, first, most, seed);
 }
 
 /* ---- taking samples ---- */
