@@ -12,39 +12,51 @@ enum { GROUP = 32 }; /* samples drawn together */
 
 /* Searches that go on together. fraction is that of tables_invert(): in x, out where x lies inside of the cell. */
 typedef struct search_group {
-    uint32_t fraction[GROUP];
-    const uint32_t *sums[GROUP]; /* [length + 1] each, perhaps a piece of longer ones */
-    uint32_t cell[GROUP];
+    const uint32_t *sums;
+    alignas(64) int32_t first[GROUP]; /* of the [length + 1] sums that are searched, perhaps a piece of longer ones */
+    alignas(64) uint32_t fraction[GROUP];
+    alignas(64) uint32_t cell[GROUP];
 } search_group;
+
+/* What prefix sums must exceed for the cell that holds x to end. */
+static void find_wholes(search_group *group, uint32_t count, uint32_t length, uint32_t *restrict wholes)
+{
+    const uint32_t *sums = group->sums;
+#pragma omp simd
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t before = sums[group->first[i]], total = sums[group->first[i] + (int32_t)length] - before;
+        wholes[i] = before + (uint32_t)(((uint64_t)group->fraction[i] * total) >> 32);
+        group->cell[i] = 0;
+    }
+}
 
 /* tables_invert() for each: as many steps for all, without branches. */
 static void invert_group(search_group *group, uint32_t count, uint32_t length)
 {
-    uint32_t whole[GROUP], highest = 1;
-    for (uint32_t i = 0; i < count; i++) {
-        const uint32_t *sums = group->sums[i], total = sums[length] - sums[0];
-        whole[i] = sums[0] + (uint32_t)(((uint64_t)group->fraction[i] * total) >> 32);
-        group->cell[i] = 0;
-    }
+    alignas(64) uint32_t wholes[GROUP];
+    const uint32_t *sums = group->sums;
+    uint32_t highest = 1;
+    find_wholes(group, count, length, wholes);
     while (highest < length)
         highest *= 2;
     for (uint32_t step = highest / 2; step > 0; step /= 2)
+#pragma omp simd
         for (uint32_t i = 0; i < count; i++) {
             uint32_t next = group->cell[i] + step;
             next = next < length ? next : length; /* where the sum is above whole */
-            uint32_t is_below = group->sums[i][next] <= whole[i];
-            group->cell[i] += step & (0u - is_below); /* a branch would be guessed wrong half of the time */
+            group->cell[i] += sums[group->first[i] + (int32_t)next] <= wholes[i] ? step : 0;
         }
     for (uint32_t i = 0; i < count; i++)
-        group->fraction[i] = tables_fraction_within(group->sums[i], length, group->cell[i], group->fraction[i]);
+        group->fraction[i] =
+            tables_fraction_within(sums + group->first[i], length, group->cell[i], group->fraction[i]);
 }
 
 /* A group of samples on its way from points to texels. */
 typedef struct sample_group {
     uint32_t count;
-    uint32_t faces[GROUP], rows[GROUP], first_columns[GROUP];
+    alignas(64) uint32_t faces[GROUP], rows[GROUP], columns[GROUP];
+    alignas(64) float u[GROUP], v[GROUP];
     search_group row, column;
-    face_place places[GROUP];
 } sample_group;
 
 /* Points first ... of a pool: x for the columns, y for the rows. */
@@ -64,32 +76,45 @@ static void choose_rows(const helio_pools *pools, uint32_t pool, sample_group *g
 {
     const helio_tables *tables = pools->tables;
     const bool whole = pools->parts.light == STRATEGY_LIGHT_WHOLE;
+    group->row.sums = tables->marginals;
     for (uint32_t i = 0; i < group->count; i++) {
         uint32_t *fraction = &group->row.fraction[i];
         group->faces[i] = whole ? tables_invert(tables->faces, CUBE_FACES, *fraction, fraction) : pool;
-        group->row.sums[i] = tables_face(tables, group->faces[i]).marginal;
+        group->row.first[i] = (int32_t)(group->faces[i] * (tables->size + 1));
     }
     invert_group(&group->row, group->count, tables->size);
-    for (uint32_t i = 0; i < group->count; i++) {
+    for (uint32_t i = 0; i < group->count; i++)
         group->rows[i] = group->row.cell[i];
-        group->first_columns[i] = 0;
+}
+
+/* The texel in each row, among `columns` of them from first_column on, and the place in it. */
+static void choose_texels(const helio_tables *tables, uint32_t first_column, uint32_t columns, sample_group *group)
+{
+    const uint32_t size = tables->size;
+    group->column.sums = tables->rows;
+    for (uint32_t i = 0; i < group->count; i++) {
+        const uint32_t line = group->faces[i] * size + group->rows[i];
+        group->column.first[i] = (int32_t)(line * (size + 1) + first_column);
+        __builtin_prefetch(&tables->rows[group->column.first[i]]);
+        __builtin_prefetch(&tables->rows[group->column.first[i] + (int32_t)columns]);
+    }
+    invert_group(&group->column, group->count, columns);
+    for (uint32_t i = 0; i < group->count; i++) {
+        group->columns[i] = first_column + group->column.cell[i];
+        __builtin_prefetch(environment_texel(tables->environment, group->faces[i], group->rows[i], group->columns[i]));
+    }
+#pragma omp simd
+    for (uint32_t i = 0; i < group->count; i++) {
+        const face_place at = tables_place(size, 0, group->rows[i], group->row.fraction[i], group->columns[i],
+                                           group->column.fraction[i]);
+        group->u[i] = at.u;
+        group->v[i] = at.v;
     }
 }
 
-/* The texel in each row, among `columns` of them, and the place in it. */
-static void choose_texels(const helio_tables *tables, uint32_t columns, sample_group *group)
+static face_place place_of(const sample_group *group, uint32_t i)
 {
-    const uint32_t size = tables->size;
-    for (uint32_t i = 0; i < group->count; i++)
-        group->column.sums[i] =
-            tables_face(tables, group->faces[i]).rows + (size_t)group->rows[i] * (size + 1) + group->first_columns[i];
-    invert_group(&group->column, group->count, columns);
-    for (uint32_t i = 0; i < group->count; i++) {
-        group->places[i] = tables_place(size, group->faces[i], group->rows[i], group->row.fraction[i],
-                                        group->first_columns[i] + group->column.cell[i], group->column.fraction[i]);
-        const face_place *at = &group->places[i];
-        __builtin_prefetch(environment_texel(tables->environment, at->face, at->row, at->column));
-    }
+    return (face_place){group->faces[i], group->rows[i], group->columns[i], group->u[i], group->v[i]};
 }
 
 /* Finite, so that times 0 it is 0. */
@@ -122,14 +147,16 @@ static void store_sample(helio_pools *pools, uint32_t pool, uint32_t index, cons
 
 void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed)
 {
+    sample_group group;
     for (uint32_t done = 0; done < count; done += GROUP) {
-        sample_group group = {.count = count - done < GROUP ? count - done : GROUP};
+        group.count = count - done < GROUP ? count - done : GROUP;
         choose_points(first + done, seed, &group);
         choose_rows(pools, pool, &group);
-        choose_texels(pools->tables, pools->tables->size, &group);
+        choose_texels(pools->tables, 0, pools->tables->size, &group);
         for (uint32_t i = 0; i < group.count; i++) {
+            const face_place at = place_of(&group, i);
             helio_table_sample sample;
-            tables_sample_at(pools->tables, &group.places[i], pools_density(pools, pool, &group.places[i]), &sample);
+            tables_sample_at(pools->tables, &at, pools_density(pools, pool, &at), &sample);
             store_sample(pools, pool, first + done + i, &sample);
         }
     }
@@ -137,60 +164,112 @@ void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32
 
 /* ---- samples of tiles, and pools of bins made of them ---- */
 
-/* Points first ... of `length`, a power of two: one in each of that many strata of y, in their order. Together they are
- * a (0,2)-net, and those at equal steps have columns as far apart as rows. */
-static void choose_strata(uint32_t first, uint32_t length, uint32_t seed, sample_group *group)
+/* Points first ... of 2^bits: one in each of that many strata of y, in their order. Together they are a (0,2)-net, and
+ * those at equal steps have columns as far apart as rows. */
+static void choose_strata(uint32_t first, int bits, uint32_t seed, sample_group *group)
 {
     const uint32_t seed_x = dimension_seed(seed, 0), seed_y = dimension_seed(seed, 1);
+#pragma omp simd
     for (uint32_t i = 0; i < group->count; i++) {
-        const uint32_t index = (uint32_t)(((uint64_t)reverse_bits(first + i) * length) >> 32);
+        const uint32_t stratum = first + i, index = reverse_bits(stratum) >> (32 - bits);
         group->column.fraction[i] = owen_scramble_reversed(pascal_transform(index), seed_x);
-        const uint64_t y = ((uint64_t)(first + i) << 32) + hash_combine(seed_y, first + i);
-        group->row.fraction[i] = (uint32_t)(y / length);
+        group->row.fraction[i] = (stratum << (32 - bits)) + (hash_combine(seed_y, stratum) >> bits);
     }
 }
 
-/* The row of each sample in a tile, whose number of columns is returned. */
-static uint32_t choose_rows_of_tile(const tiles *t, uint32_t position, sample_group *group)
+/* A tile in the tables. */
+typedef struct tile_texels {
+    uint32_t position, face, row, column; /* of the first texel */
+    uint32_t rows, columns;
+} tile_texels;
+
+static tile_texels texels_of(const tiles *t, uint32_t position)
 {
     const uint32_t edge = t->per_edge, grid = t->grid[position], row = grid / edge % edge, column = grid % edge;
-    for (uint32_t i = 0; i < group->count; i++)
-        group->row.sums[i] = t->sums + (size_t)position * t->stride;
-    invert_group(&group->row, group->count, t->starts[row + 1] - t->starts[row]);
-    for (uint32_t i = 0; i < group->count; i++) {
-        group->faces[i] = grid / (edge * edge);
-        group->rows[i] = t->starts[row] + group->row.cell[i];
-        group->first_columns[i] = t->starts[column];
-    }
-    return t->starts[column + 1] - t->starts[column];
+    return (tile_texels){position,
+                         grid / (edge * edge),
+                         t->starts[row],
+                         t->starts[column],
+                         t->starts[row + 1] - t->starts[row],
+                         t->starts[column + 1] - t->starts[column]};
 }
 
-static listed_sample list_sample(const tiles *t, uint32_t position, const helio_table_sample *sample)
+static void choose_rows_of_tile(const tiles *t, const tile_texels *tile, sample_group *group)
 {
-    const vec3 centre = {t->x[position], t->y[position], t->z[position]};
-    const float towards = dot(centre, vec3_from(sample->direction)), scale = towards / t->colours.brightness[position];
-    listed_sample listed = {.direction[3] = towards, .density = sample->density};
-    for (int c = 0; c < 3; c++) {
-        listed.direction[c] = sample->direction[c];
-        listed.radiance[c] = sample->radiance[c];
-        listed.weighted[c] = weighted(sample->radiance[c], sample->density);
-        listed.hue[c] = listed.weighted[c] * scale;
+    group->row.sums = t->sums + (size_t)tile->position * t->stride;
+    for (uint32_t i = 0; i < group->count; i++)
+        group->row.first[i] = 0;
+    invert_group(&group->row, group->count, tile->rows);
+    for (uint32_t i = 0; i < group->count; i++) {
+        group->faces[i] = tile->face;
+        group->rows[i] = tile->row + group->row.cell[i];
     }
-    return listed;
+}
+
+/* What samples of a tile have beside their light: [count] each. */
+typedef struct listed_places {
+    alignas(64) float x[GROUP], y[GROUP], z[GROUP];
+    alignas(64) float towards[GROUP]; /* cosine to the tile's centre */
+    alignas(64) float density[GROUP];
+} listed_places;
+
+/* cube_direction() and tiles_density() for each. */
+static void find_places(const tiles *t, const helio_tables *tables, const tile_texels *tile, const sample_group *group,
+                        listed_places *places)
+{
+    const cube_face face = cube_faces[tile->face];
+    const vec3 centre = {t->x[tile->position], t->y[tile->position], t->z[tile->position]};
+    const float *per_weight = t->segment_densities + t->of_line[tile->column];
+    const int32_t first_line = (int32_t)(tile->face * t->size), per_edge = (int32_t)t->per_edge;
+#pragma omp simd
+    for (uint32_t i = 0; i < group->count; i++) {
+        const float u = group->u[i], v = group->v[i], radius2 = 1.0f + u * u + v * v;
+        const vec3 towards = add_scaled(add_scaled(face.axis, face.right, u), face.down, v);
+        const vec3 direction = scale(towards, 1.0f / sqrtf(radius2));
+        const int32_t texel = group->column.first[i] + (int32_t)group->column.cell[i];
+        const float weight = (float)(int32_t)(tables->rows[texel + 1] - tables->rows[texel]); /* below 2^31 */
+        places->x[i] = direction.x;
+        places->y[i] = direction.y;
+        places->z[i] = direction.z;
+        places->towards[i] = dot(centre, direction);
+        places->density[i] =
+            weight * per_weight[(first_line + (int32_t)group->rows[i]) * per_edge] * (radius2 * sqrtf(radius2));
+    }
+}
+
+static inline void list_sample(const listed_places *places, uint32_t i, const float *rgb, float brightness,
+                               listed_sample *listed)
+{
+    const float hue = places->towards[i] / brightness;
+    listed->direction[0] = places->x[i];
+    listed->direction[1] = places->y[i];
+    listed->direction[2] = places->z[i];
+    listed->direction[3] = places->towards[i];
+    listed->density = places->density[i];
+    for (int c = 0; c < 3; c++) {
+        listed->radiance[c] = rgb[c];
+        listed->weighted[c] = weighted(rgb[c], places->density[i]);
+        listed->hue[c] = listed->weighted[c] * hue;
+    }
 }
 
 void KERNEL(draw_tile)(normal_bins *bins, const helio_tables *tables, uint32_t position, uint32_t seed)
 {
+    const tiles *t = bins->tiles;
     const uint32_t start = bins->list_starts[position], length = bins->list_starts[position + 1] - start;
+    const tile_texels tile = texels_of(t, position);
+    sample_group group;
+    listed_places places;
     for (uint32_t done = 0; done < length; done += GROUP) {
-        sample_group group = {.count = length - done < GROUP ? length - done : GROUP};
-        choose_strata(done, length, seed, &group);
-        choose_texels(tables, choose_rows_of_tile(bins->tiles, position, &group), &group);
-        for (uint32_t i = 0; i < group.count; i++) {
-            helio_table_sample sample;
-            tables_sample_at(tables, &group.places[i], tiles_density(bins->tiles, tables, &group.places[i]), &sample);
-            bins->listed[start + done + i] = list_sample(bins->tiles, position, &sample);
-        }
+        group.count = length - done < GROUP ? length - done : GROUP;
+        choose_strata(done, 31 - __builtin_clz(length), seed, &group);
+        choose_rows_of_tile(t, &tile, &group);
+        choose_texels(tables, tile.column, tile.columns, &group);
+        find_places(t, tables, &tile, &group, &places);
+        for (uint32_t i = 0; i < group.count; i++)
+            list_sample(&places, i,
+                        environment_texel(tables->environment, tile.face, group.rows[i], group.columns[i]),
+                        t->colours.brightness[position], &bins->listed[start + done + i]);
     }
 }
 
