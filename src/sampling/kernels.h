@@ -60,10 +60,10 @@ typedef struct kernel_set {
      * The same bits with every instruction set. */
     void (*draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
 
-    /* Draws the list of a tile anew, unless it is empty. seed: of the tile. Draws the pool of a bin that is not black
+    /* Draws the lists of tiles first ... end - 1 anew. seed: of all lists. Draws the pool of a bin that is not black
      * from the lists of the tiles, and its sums for the control variate. seed: of the pool. The same bits with every
      * instruction set. */
-    void (*draw_tile)(normal_bins *bins, const helio_tables *tables, uint32_t position, uint32_t seed);
+    void (*draw_tiles)(normal_bins *bins, const helio_tables *tables, uint32_t first, uint32_t end, uint32_t seed);
     void (*draw_bin)(helio_pools *pools, uint32_t bin, uint32_t seed);
 
     /* Prepares points for their samples: turns their directions to the map's space, lifts views that graze, and fills
@@ -134,7 +134,7 @@ void KERNEL(know_bin)(const tiles *t, const normal_bin *bin, struct control_matr
 void KERNEL(mix_hues)(const tiles *t, point_tiles *p);
 void KERNEL(weigh_point)(const tiles *t, const tile_lobe *lobe, point_tiles *p);
 void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
-void KERNEL(draw_tile)(normal_bins *bins, const helio_tables *tables, uint32_t position, uint32_t seed);
+void KERNEL(draw_tiles)(normal_bins *bins, const helio_tables *tables, uint32_t first, uint32_t end, uint32_t seed);
 void KERNEL(draw_bin)(helio_pools *pools, uint32_t bin, uint32_t seed);
 void KERNEL(prepare_points)(const helio_pools *pools, const helio_estimate_desc *desc, point_block *block);
 void KERNEL(round_counts)(uint32_t samples, point_block *block);

@@ -8,7 +8,10 @@
 
 #include <float.h>
 
-enum { GROUP = 32 }; /* samples drawn together */
+enum {
+    GROUP = 32, /* samples drawn side by side */
+    PIECES = 8, /* of lists, drawn one step of each after the other */
+};
 
 /* Searches that go on together. fraction is that of tables_invert(): in x, out where x lies inside of the cell. */
 typedef struct search_group {
@@ -53,7 +56,7 @@ static void invert_group(search_group *group, uint32_t count, uint32_t length)
 
 /* A group of samples on its way from points to texels. */
 typedef struct sample_group {
-    uint32_t count;
+    uint32_t count, first_column;
     alignas(64) uint32_t faces[GROUP], rows[GROUP], columns[GROUP];
     alignas(64) float u[GROUP], v[GROUP];
     search_group row, column;
@@ -87,10 +90,11 @@ static void choose_rows(const helio_pools *pools, uint32_t pool, sample_group *g
         group->rows[i] = group->row.cell[i];
 }
 
-/* The texel in each row, among `columns` of them from first_column on, and the place in it. */
-static void choose_texels(const helio_tables *tables, uint32_t first_column, uint32_t columns, sample_group *group)
+/* Where the sums of each row begin, of which those of `columns` texels from first_column on are searched. */
+static void aim_at_columns(const helio_tables *tables, uint32_t first_column, uint32_t columns, sample_group *group)
 {
     const uint32_t size = tables->size;
+    group->first_column = first_column;
     group->column.sums = tables->rows;
     for (uint32_t i = 0; i < group->count; i++) {
         const uint32_t line = group->faces[i] * size + group->rows[i];
@@ -98,9 +102,15 @@ static void choose_texels(const helio_tables *tables, uint32_t first_column, uin
         __builtin_prefetch(&tables->rows[group->column.first[i]]);
         __builtin_prefetch(&tables->rows[group->column.first[i] + (int32_t)columns]);
     }
+}
+
+/* The texel in each row, and the place in it. */
+static void choose_texels(const helio_tables *tables, uint32_t columns, sample_group *group)
+{
+    const uint32_t size = tables->size;
     invert_group(&group->column, group->count, columns);
     for (uint32_t i = 0; i < group->count; i++) {
-        group->columns[i] = first_column + group->column.cell[i];
+        group->columns[i] = group->first_column + group->column.cell[i];
         __builtin_prefetch(environment_texel(tables->environment, group->faces[i], group->rows[i], group->columns[i]));
     }
 #pragma omp simd
@@ -152,7 +162,8 @@ void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32
         group.count = count - done < GROUP ? count - done : GROUP;
         choose_points(first + done, seed, &group);
         choose_rows(pools, pool, &group);
-        choose_texels(pools->tables, 0, pools->tables->size, &group);
+        aim_at_columns(pools->tables, 0, pools->tables->size, &group);
+        choose_texels(pools->tables, pools->tables->size, &group);
         for (uint32_t i = 0; i < group.count; i++) {
             const face_place at = place_of(&group, i);
             helio_table_sample sample;
@@ -253,24 +264,60 @@ static inline void list_sample(const listed_places *places, uint32_t i, const fl
     }
 }
 
-void KERNEL(draw_tile)(normal_bins *bins, const helio_tables *tables, uint32_t position, uint32_t seed)
-{
-    const tiles *t = bins->tiles;
-    const uint32_t start = bins->list_starts[position], length = bins->list_starts[position + 1] - start;
-    const tile_texels tile = texels_of(t, position);
+/* Samples of a list that are drawn side by side. */
+typedef struct list_piece {
+    tile_texels tile;
+    listed_sample *listed;
     sample_group group;
+} list_piece;
+
+static void begin_piece(const normal_bins *bins, const helio_tables *tables, uint32_t position, uint32_t first,
+                        uint32_t seed, list_piece *piece)
+{
+    const uint32_t start = bins->list_starts[position], length = bins->list_starts[position + 1] - start;
+    piece->tile = texels_of(bins->tiles, position);
+    piece->listed = &bins->listed[start + first];
+    piece->group.count = length - first < GROUP ? length - first : GROUP;
+    choose_strata(first, 31 - __builtin_clz(length), seed, &piece->group);
+    choose_rows_of_tile(bins->tiles, &piece->tile, &piece->group);
+    aim_at_columns(tables, piece->tile.column, piece->tile.columns, &piece->group);
+}
+
+static void end_piece(const normal_bins *bins, const helio_tables *tables, const list_piece *piece)
+{
+    const sample_group *group = &piece->group;
     listed_places places;
-    for (uint32_t done = 0; done < length; done += GROUP) {
-        group.count = length - done < GROUP ? length - done : GROUP;
-        choose_strata(done, 31 - __builtin_clz(length), seed, &group);
-        choose_rows_of_tile(t, &tile, &group);
-        choose_texels(tables, tile.column, tile.columns, &group);
-        find_places(t, tables, &tile, &group, &places);
-        for (uint32_t i = 0; i < group.count; i++)
-            list_sample(&places, i,
-                        environment_texel(tables->environment, tile.face, group.rows[i], group.columns[i]),
-                        t->colours.brightness[position], &bins->listed[start + done + i]);
+    find_places(bins->tiles, tables, &piece->tile, group, &places);
+    for (uint32_t i = 0; i < group->count; i++)
+        list_sample(&places, i,
+                    environment_texel(tables->environment, piece->tile.face, group->rows[i], group->columns[i]),
+                    bins->tiles->colours.brightness[piece->tile.position], &piece->listed[i]);
+}
+
+/* What one step asks of memory has come when the same step is done for all pieces. */
+static void draw_pieces(const normal_bins *bins, const helio_tables *tables, list_piece *pieces, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++)
+        choose_texels(tables, pieces[i].tile.columns, &pieces[i].group);
+    for (uint32_t i = 0; i < count; i++)
+        end_piece(bins, tables, &pieces[i]);
+}
+
+void KERNEL(draw_tiles)(normal_bins *bins, const helio_tables *tables, uint32_t first, uint32_t end, uint32_t seed)
+{
+    list_piece pieces[PIECES];
+    uint32_t count = 0;
+    for (uint32_t position = first; position < end; position++) {
+        const uint32_t length = bins->list_starts[position + 1] - bins->list_starts[position];
+        for (uint32_t done = 0; done < length; done += GROUP) {
+            begin_piece(bins, tables, position, done, hash_combine(seed, position), &pieces[count++]);
+            if (count == PIECES) {
+                draw_pieces(bins, tables, pieces, count);
+                count = 0;
+            }
+        }
     }
+    draw_pieces(bins, tables, pieces, count);
 }
 
 /* Samples of the pool of a bin that are drawn together, in the order in which they are stored. */
