@@ -8,6 +8,8 @@
 
 #include <float.h>
 
+_Static_assert((int)POOL_RUN_MOST <= (int)TILE_SAMPLES_MOST, "a run is shared out at once");
+
 enum {
     GROUP = 32, /* samples drawn side by side */
     PIECES = 8, /* of lists, drawn one step of each after the other */
@@ -330,16 +332,13 @@ typedef struct bin_samples {
 /* Samples of a run lie in the order of their numbers with the bits reversed, and some of them flipped at random: so
  * each aligned window of a power of two has one of each of that many parts of the run, and any place holds each of the
  * samples with the same probability. */
-static void choose_run(const normal_bins *bins, const tile_levels *levels, uint32_t run, uint32_t seed,
-                       uint32_t *positions, uint32_t *elements)
+static void order_run(const normal_bins *bins, const tile_samples *drawn, uint32_t *positions, uint32_t *elements)
 {
-    alignas(64) uint32_t drawn_positions[POOL_RUN_MOST], drawn_elements[POOL_RUN_MOST];
-    const uint32_t flipped = tile_tree_random(seed, TILE_TREE_ORDER);
-    tile_levels_draw(levels, bins->list_starts, run, seed, drawn_positions, drawn_elements);
+    const uint32_t flipped = tile_tree_random(drawn->seed, TILE_TREE_ORDER), run = drawn->count;
     for (uint32_t i = 0; i < run; i++) {
         const uint32_t number = (uint32_t)(((uint64_t)(reverse_bits(i) ^ flipped) * run) >> 32);
-        positions[i] = drawn_positions[number];
-        elements[i] = drawn_elements[number];
+        positions[i] = drawn->nodes[number];
+        elements[i] = drawn->places[number];
         __builtin_prefetch(&bins->listed[elements[i]]);
     }
 }
@@ -363,8 +362,9 @@ static void weigh_samples(const normal_bins *bins, uint32_t bin, const uint32_t 
 }
 
 /* What a sample is worth given the bin: weighted is finite here too. */
-static inline void scale_light(const listed_sample *sample, float scale, float light[4])
+static inline void scale_light(const listed_sample *restrict sample, float scale, float *restrict light)
 {
+#pragma omp simd
     for (int c = 0; c < 4; c++) {
         const float product = sample->weighted[c] * scale;
         light[c] = product < FLT_MAX ? product : FLT_MAX;
@@ -372,13 +372,18 @@ static inline void scale_light(const listed_sample *sample, float scale, float l
 }
 
 /* Adds what a sample stands for, see control.h. */
-static inline void add_known(const listed_sample *sample, float slope, float offset, const float light[4],
-                             control_matrix *sum)
+static inline void add_known(const listed_sample *sample, float slope, float offset, const float *restrict light,
+                             control_matrix *restrict sum)
 {
     const float line[4] = {slope, slope, slope, offset};
+    float factors[4];
+#pragma omp simd
     for (int row = 0; row < 4; row++)
+        factors[row] = line[row] * sample->direction[row];
+    for (int row = 0; row < 4; row++)
+#pragma omp simd
         for (int c = 0; c < 4; c++)
-            sum->rows[row][c] += line[row] * sample->direction[row] * light[c];
+            sum->rows[row][c] += factors[row] * light[c];
 }
 
 /* The samples of a chunk, and the sums up to its end. */
@@ -404,16 +409,17 @@ static inline void store_chunk(const listed_sample *listed, const bin_samples *s
 
 /* Whole runs, as many as fit. */
 static void draw_runs(helio_pools *pools, uint32_t bin, const tile_levels *levels, uint32_t first, uint32_t count,
-                      uint32_t seed)
+                      uint32_t seed, tile_samples *drawn)
 {
     const normal_bins *bins = pools->bins;
     const uint32_t run = pools_run_of_bin(pools);
     float *to = pools_array(pools, bin, SAMPLE_X) + first;
     control_matrix *control = control_sums(pools->control, bin) + first / CONTROL_CHUNK;
     bin_samples samples;
-    for (uint32_t done = 0; done < count; done += run)
-        choose_run(bins, levels, run, hash_combine(seed, (first + done) / run), samples.positions + done,
-                   samples.elements + done);
+    for (uint32_t done = 0; done < count; done += run) {
+        tile_levels_draw(levels, bins->list_starts, run, hash_combine(seed, (first + done) / run), drawn);
+        order_run(bins, drawn, samples.positions + done, samples.elements + done);
+    }
     weigh_samples(bins, bin, levels->tiles, count, &samples);
     for (uint32_t i = 0; i < count; i += CONTROL_CHUNK, control++)
         store_chunk(bins->listed, &samples, i, to, pools->stride, control, control + 1);
@@ -423,9 +429,10 @@ void KERNEL(draw_bin)(helio_pools *pools, uint32_t bin, uint32_t seed)
 {
     const uint32_t length = pools->pool_length, most = length < POOL_RUN_MOST ? length : POOL_RUN_MOST;
     tile_levels levels;
+    tile_samples drawn = {0};
     tile_levels_make(normal_bins_sums(pools->bins, bin), pools->bins->tiles->count, &levels);
     for (uint32_t first = 0; first < length; first += most)
-        draw_runs(pools, bin, &levels, first, most, seed);
+        draw_runs(pools, bin, &levels, first, most, seed, &drawn);
 }
 
 /* ---- taking samples ---- */
