@@ -101,8 +101,10 @@ static void aim_at_columns(const helio_tables *tables, uint32_t first_column, ui
     for (uint32_t i = 0; i < group->count; i++) {
         const uint32_t line = group->faces[i] * size + group->rows[i];
         group->column.first[i] = (int32_t)(line * (size + 1) + first_column);
-        __builtin_prefetch(&tables->rows[group->column.first[i]]);
-        __builtin_prefetch(&tables->rows[group->column.first[i] + (int32_t)columns]);
+        const uint32_t *sums = &tables->rows[group->column.first[i]];
+        __builtin_prefetch(sums);
+        __builtin_prefetch(sums + columns / 2);
+        __builtin_prefetch(sums + columns);
     }
 }
 
@@ -327,19 +329,23 @@ typedef struct bin_samples {
     alignas(64) uint32_t positions[POOL_RUN_MOST], elements[POOL_RUN_MOST];
     alignas(64) float probabilities[POOL_RUN_MOST], scales[POOL_RUN_MOST]; /* of the tile given the bin; 1 / that */
     alignas(64) float slopes[POOL_RUN_MOST], offsets[POOL_RUN_MOST];       /* see control_line */
+    alignas(64) float arrays[POOL_ARRAYS][POOL_RUN_MOST];                  /* what the pool holds in the end */
 } bin_samples;
 
 /* Samples of a run lie in the order of their numbers with the bits reversed, and some of them flipped at random: so
  * each aligned window of a power of two has one of each of that many parts of the run, and any place holds each of the
  * samples with the same probability. */
-static void order_run(const normal_bins *bins, const tile_samples *drawn, uint32_t *positions, uint32_t *elements)
+static void order_run(const tile_samples *drawn, uint32_t *restrict positions, uint32_t *restrict elements)
 {
+    alignas(64) uint32_t numbers[POOL_RUN_MOST];
     const uint32_t flipped = tile_tree_random(drawn->seed, TILE_TREE_ORDER), run = drawn->count;
+    const int unused = __builtin_clz(run) + 1; /* bits: runs are powers of two */
+#pragma omp simd
+    for (uint32_t i = 0; i < run; i++)
+        numbers[i] = (reverse_bits(i) ^ flipped) >> unused;
     for (uint32_t i = 0; i < run; i++) {
-        const uint32_t number = (uint32_t)(((uint64_t)(reverse_bits(i) ^ flipped) * run) >> 32);
-        positions[i] = drawn->nodes[number];
-        elements[i] = drawn->places[number];
-        __builtin_prefetch(&bins->listed[elements[i]]);
+        positions[i] = drawn->nodes[numbers[i]];
+        elements[i] = drawn->places[numbers[i]];
     }
 }
 
@@ -386,20 +392,20 @@ static inline void add_known(const listed_sample *sample, float slope, float off
             sum->rows[row][c] += factors[row] * light[c];
 }
 
-/* The samples of a chunk, and the sums up to its end. */
-static inline void store_chunk(const listed_sample *listed, const bin_samples *samples, uint32_t first, float *to,
-                               size_t stride, const control_matrix *before, control_matrix *after)
+/* Takes the samples of a chunk from their lists, and finds the sums up to its end. */
+static inline void take_chunk(const listed_sample *listed, uint32_t first, bin_samples *samples,
+                              const control_matrix *before, control_matrix *after)
 {
     control_matrix sum = {{{0}}};
     for (uint32_t i = first; i < first + CONTROL_CHUNK; i++) {
         const listed_sample *sample = &listed[samples->elements[i]];
         float light[4];
         scale_light(sample, samples->scales[i], light);
-        store_light(to + i, stride, sample->direction, sample->radiance);
-        to[SAMPLE_DENSITY * stride + i] = samples->probabilities[i] * sample->density;
-        to[SAMPLE_WEIGHTED_RED * stride + i] = light[0];
-        to[SAMPLE_WEIGHTED_GREEN * stride + i] = light[1];
-        to[SAMPLE_WEIGHTED_BLUE * stride + i] = light[2];
+        store_light(&samples->arrays[0][i], POOL_RUN_MOST, sample->direction, sample->radiance);
+        samples->arrays[SAMPLE_DENSITY][i] = samples->probabilities[i] * sample->density;
+        samples->arrays[SAMPLE_WEIGHTED_RED][i] = light[0];
+        samples->arrays[SAMPLE_WEIGHTED_GREEN][i] = light[1];
+        samples->arrays[SAMPLE_WEIGHTED_BLUE][i] = light[2];
         add_known(sample, samples->slopes[i], samples->offsets[i], light, &sum);
     }
     for (int row = 0; row < 4; row++)
@@ -413,16 +419,19 @@ static void draw_runs(helio_pools *pools, uint32_t bin, const tile_levels *level
 {
     const normal_bins *bins = pools->bins;
     const uint32_t run = pools_run_of_bin(pools);
-    float *to = pools_array(pools, bin, SAMPLE_X) + first;
     control_matrix *control = control_sums(pools->control, bin) + first / CONTROL_CHUNK;
     bin_samples samples;
     for (uint32_t done = 0; done < count; done += run) {
         tile_levels_draw(levels, bins->list_starts, run, hash_combine(seed, (first + done) / run), drawn);
-        order_run(bins, drawn, samples.positions + done, samples.elements + done);
+        for (uint32_t i = 0; i < run; i++)
+            __builtin_prefetch(&bins->listed[drawn->places[i]]);
+        order_run(drawn, samples.positions + done, samples.elements + done);
     }
     weigh_samples(bins, bin, levels->tiles, count, &samples);
     for (uint32_t i = 0; i < count; i += CONTROL_CHUNK, control++)
-        store_chunk(bins->listed, &samples, i, to, pools->stride, control, control + 1);
+        take_chunk(bins->listed, i, &samples, control, control + 1);
+    for (int array = 0; array < POOL_ARRAYS; array++)
+        memcpy(pools_array(pools, bin, (enum sample_array)array) + first, samples.arrays[array], count * sizeof(float));
 }
 
 void KERNEL(draw_bin)(helio_pools *pools, uint32_t bin, uint32_t seed)

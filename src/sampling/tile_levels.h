@@ -54,13 +54,13 @@ typedef struct tile_samples {
     alignas(64) uint32_t randoms[TILE_SAMPLES_MOST];               /* of the nodes */
 } tile_samples;
 
-/* The end of those that have the same node as sample i. */
+/* The end of those that have the same node as sample i; past the last comes no node. */
 static inline uint32_t tile_samples_end(const tile_samples *samples, uint32_t i)
 {
     const uint32_t node = samples->nodes[i];
     do
         i++;
-    while (i < samples->count && samples->nodes[i] == node);
+    while (samples->nodes[i] == node);
     return i;
 }
 
@@ -139,13 +139,20 @@ static inline void tile_samples_descend_few(tile_samples *samples, uint32_t firs
     }
 }
 
-/* Elements at equal steps through the list of each tile. */
+/* Elements at equal steps through the list of each tile. Most tiles have one sample, and are done all together. */
 static inline void tile_samples_choose_elements(tile_samples *samples, const uint32_t *list_starts)
 {
+    const uint32_t count = samples->count;
     tile_samples_find_randoms(samples, 0);
-    for (uint32_t i = 0, end; i < samples->count; i = end) {
+#pragma omp simd
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t start = list_starts[samples->nodes[i]], length = list_starts[samples->nodes[i] + 1] - start;
+        samples->places[i] = start + (uint32_t)(((uint64_t)length * samples->randoms[i]) >> 32);
+    }
+    for (uint32_t i = 0, end; i < count; i = end) {
         end = tile_samples_end(samples, i);
-        tile_samples_place(samples, list_starts, i, end);
+        if (end - i > 1)
+            tile_samples_place(samples, list_starts, i, end);
     }
 }
 
@@ -158,6 +165,7 @@ static inline void tile_levels_draw(const tile_levels *levels, const uint32_t *l
     samples->seed = seed;
     for (uint32_t i = 0; i < count; i++)
         samples->nodes[i] = 0;
+    samples->nodes[count] = UINT32_MAX;
     tile_samples_descend_many(samples, TILE_TREE_ROOT, levels->all, levels->runs);
     tile_samples_descend_many(samples, TILE_TREE_RUNS, levels->runs, levels->groups);
     tile_samples_descend_few(samples, TILE_TREE_GROUPS, levels->groups, levels->tiles);
