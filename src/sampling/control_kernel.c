@@ -64,6 +64,19 @@ void KERNEL(add_texels)(const texel_rows *texels, const float *rgb, size_t strid
             add_rows(row, 1, texels->count, rgb, stride, moments, sums);
 }
 
+colour_sums KERNEL(sum_columns)(const column_colours *columns, const float *u, uint32_t first, uint32_t end)
+{
+    colour_sums sums = {{0}, {0}, {0}};
+    for (uint32_t i = first; i < end; i++)
+#pragma omp simd
+        for (uint32_t c = 0; c < 4; c++) {
+            sums.along_axis[c] += (double)columns->along_axis[3 * (size_t)i + c];
+            sums.along_right[c] += (double)(columns->along_right[3 * (size_t)i + c] * u[i]);
+            sums.along_down[c] += (double)columns->along_down[3 * (size_t)i + c];
+        }
+    return sums;
+}
+
 /* Few enough that floats hold their sum; a multiple of all registers. */
 enum { TILES_SUMMED = 96 };
 

@@ -18,6 +18,7 @@
 #define KERNEL(name) KERNEL_NAME(name, HELIO_ISA)
 
 struct background;
+struct colour_sums;
 struct column_colours;
 struct control_matrix;
 struct exposure_columns;
@@ -46,6 +47,10 @@ typedef struct kernel_set {
     void (*find_moments)(const struct texel_rows *texels, struct texel_moments *moments);
     void (*add_texels)(const struct texel_rows *texels, const float *rgb, size_t stride,
                        const struct texel_moments *moments, struct column_colours *sums);
+
+    /* Sums of columns first ... end - 1. u: of the columns. */
+    struct colour_sums (*sum_columns)(const struct column_colours *columns, const float *u, uint32_t first,
+                                      uint32_t end);
 
     /* The known light of a bin of normals, from that of the tiles. */
     void (*know_bin)(const tiles *t, const normal_bin *bin, struct control_matrix *known);
@@ -130,6 +135,8 @@ uint32_t KERNEL(weigh_tiles)(const tiles *t, const normal_bin *bin, uint32_t *su
 void KERNEL(find_moments)(const struct texel_rows *texels, struct texel_moments *moments);
 void KERNEL(add_texels)(const struct texel_rows *texels, const float *rgb, size_t stride,
                         const struct texel_moments *moments, struct column_colours *sums);
+struct colour_sums KERNEL(sum_columns)(const struct column_colours *columns, const float *u, uint32_t first,
+                                       uint32_t end);
 void KERNEL(know_bin)(const tiles *t, const normal_bin *bin, struct control_matrix *known);
 void KERNEL(mix_hues)(const tiles *t, point_tiles *p);
 void KERNEL(weigh_point)(const tiles *t, const tile_lobe *lobe, point_tiles *p);

@@ -8,6 +8,7 @@ const kernel_set KERNEL(kernels) = {
     .weigh_tiles = KERNEL(weigh_tiles),
     .find_moments = KERNEL(find_moments),
     .add_texels = KERNEL(add_texels),
+    .sum_columns = KERNEL(sum_columns),
     .know_bin = KERNEL(know_bin),
     .mix_hues = KERNEL(mix_hues),
     .weigh_point = KERNEL(weigh_point),

@@ -44,7 +44,7 @@ static void lay_band(const colour_work *work, uint32_t index, tile_band *band)
     for (uint32_t i = 0; i < band->count; i++)
         band->u[i] = ((float)(band->first_column * band->split + i) + 0.5f) * band->width - 1.0f;
     for (uint32_t face = 0; face < CUBE_FACES; face++)
-        for (uint32_t i = 0; i < 3 * band->count; i++)
+        for (uint32_t i = 0; i <= 3 * band->count; i++)
             band->sums[face].along_axis[i] = band->sums[face].along_right[i] = band->sums[face].along_down[i] = 0.0f;
 }
 
@@ -75,26 +75,23 @@ static void add_rows(const colour_work *work, uint32_t row, uint32_t rows, tile_
     }
 }
 
-static vec3 sum_columns(const tile_band *band, const column_colours *sums, const cube_face *face, uint32_t first,
-                        uint32_t end, uint32_t c)
+static vec3 moment_of(const colour_sums *sums, const cube_face *face, int c)
 {
-    double axis = 0, right = 0, down = 0;
-    for (uint32_t i = first; i < end; i++) {
-        axis += (double)sums->along_axis[3 * i + c];
-        right += (double)(sums->along_right[3 * i + c] * band->u[i]);
-        down += (double)sums->along_down[3 * i + c];
-    }
-    return add_scaled(add_scaled(scale(face->axis, (float)axis), face->right, (float)right), face->down, (float)down);
+    const vec3 along_axis = scale(face->axis, (float)sums->along_axis[c]);
+    return add_scaled(add_scaled(along_axis, face->right, (float)sums->along_right[c]), face->down,
+                      (float)sums->along_down[c]);
 }
 
-static void colour_tile(tiles *t, const tile_band *band, uint32_t face, uint32_t column)
+static void colour_tile(const colour_work *work, const tile_band *band, uint32_t face, uint32_t column)
 {
+    tiles *t = work->tiles;
     const uint32_t position = t->positions[(face * t->per_edge + band->row) * t->per_edge + column];
     const uint32_t first = (t->starts[column] - band->first_column) * band->split;
     const uint32_t end = (t->starts[column + 1] - band->first_column) * band->split;
+    const colour_sums sums = work->kernels->sum_columns(&band->sums[face], band->u, first, end);
     float(*light)[3][TILES_MOST] = t->colours.light;
-    for (uint32_t c = 0; c < 3; c++) {
-        const vec3 moment = sum_columns(band, &band->sums[face], &cube_faces[face], first, end, c);
+    for (int c = 0; c < 3; c++) {
+        const vec3 moment = moment_of(&sums, &cube_faces[face], c);
         light[0][c][position] = moment.x;
         light[1][c][position] = moment.y;
         light[2][c][position] = moment.z;
@@ -105,7 +102,7 @@ static void colour_tile(tiles *t, const tile_band *band, uint32_t face, uint32_t
 static void colour_band(void *data, size_t index)
 {
     const colour_work *work = data;
-    tiles *t = work->tiles;
+    const tiles *t = work->tiles;
     tile_band band;
     lay_band(work, (uint32_t)index, &band);
     const uint32_t end = t->starts[band.row + 1] * band.split, most = band.split > 1 ? 1 : TEXEL_ROWS;
@@ -113,7 +110,7 @@ static void colour_band(void *data, size_t index)
         add_rows(work, row, end - row < most ? end - row : most, &band);
     for (uint32_t face = 0; face < CUBE_FACES; face++)
         for (uint32_t column = band.first; column < band.end; column++)
-            colour_tile(t, &band, face, column);
+            colour_tile(work, &band, face, column);
 }
 
 static void find_hues(tiles *t)

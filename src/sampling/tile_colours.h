@@ -40,12 +40,18 @@ typedef struct texel_moments {
     float v[TEXEL_ROWS];
 } texel_moments;
 
-/* Sums of radiance x these over the texels of each column, by colour: [count][3]. */
+/* Sums of radiance x these over the texels of each column, by colour: [count][3], and what a register reads past them.
+ */
 typedef struct column_colours {
-    alignas(64) float along_axis[3 * COLOUR_COLUMNS];
-    alignas(64) float along_right[3 * COLOUR_COLUMNS];
-    alignas(64) float along_down[3 * COLOUR_COLUMNS];
+    alignas(64) float along_axis[3 * COLOUR_COLUMNS + 1];
+    alignas(64) float along_right[3 * COLOUR_COLUMNS + 1];
+    alignas(64) float along_down[3 * COLOUR_COLUMNS + 1];
 } column_colours;
+
+/* The same over columns, with the factor u: red, green, blue and nothing, so that they are a register. */
+typedef struct colour_sums {
+    double along_axis[4], along_right[4], along_down[4];
+} colour_sums;
 
 /* Finds the colours of the frame; t->light must be there. */
 void tile_colours_update(struct tiles *t, const helio_environment *environment);
