@@ -91,7 +91,7 @@ static inline uint32_t tile_samples_count_ends(const int32_t *ends, int32_t plac
     return (uint32_t)below;
 }
 
-/* The same for samples side by side. */
+/* The same for samples side by side: TILE_LANES, few enough that all children are looked at in registers. */
 static inline void tile_samples_count_all_ends(const int32_t *restrict ends, const uint32_t *restrict places,
                                                uint32_t first_child, uint32_t *restrict children)
 {
@@ -99,7 +99,6 @@ static inline void tile_samples_count_all_ends(const int32_t *restrict ends, con
     for (int lane = 0; lane < TILE_LANES; lane++) {
         const int32_t place = (int32_t)places[lane];
         int32_t below = 0;
-#pragma GCC unroll 16
         for (int child = 0; child < TILE_CHILDREN; child++)
             below += ends[child] <= place;
         children[lane] = first_child + (uint32_t)below;
