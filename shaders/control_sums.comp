@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // A bin of normals for each work group: prefix sums over the chunks of its pool of what samples stand for. As add_known()
-// in src/sampling/pools_kernel.c.
+// in src/sampling/bins_kernel.c.
 #include "common.glsl"
 #include "control.glsl"
 

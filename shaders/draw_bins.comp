@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Pools of bins of normals, from the lists of the tiles: a sample for each thread. As draw_bin() in
-// src/sampling/pools_kernel.c. parameter[0]: samples of a pool that are shared out together.
+// src/sampling/bins_kernel.c. parameter[0]: samples of a pool that are shared out together.
 #include "common.glsl"
 #include "random.glsl"
 #include "cube.glsl"

@@ -64,8 +64,7 @@ vec3 control_difference(const light_control *c, uint32_t bin, uint32_t first, ui
     const uint32_t chunks = count / CONTROL_CHUNK;
     if (chunks == 0)
         return (vec3){0, 0, 0};
-    const control_matrix *start = control_sums(c, bin) + first / CONTROL_CHUNK,
-                         *end = start + chunks;
+    const control_matrix *start = control_sums(c, bin) + first / CONTROL_CHUNK, *end = start + chunks;
     const control_matrix *known = &c->known[bin];
     const float factor = 1.0f / (float)(chunks * CONTROL_CHUNK), n[4] = {normal.x, normal.y, normal.z, 1.0f};
     float sum[4] = {0};

@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Samples of a pool: scrambled points, and the inversion of the tables at them. Several searches go on at once, one
- * step of each after the other, so that they wait for memory together. */
+ * Samples of pools of faces, and of the lists of tiles: scrambled points, and the inversion of the tables at them.
+ * Several searches go on at once, one step of each after the other, so that they wait for memory together. */
 #include "core/random.h"
 #include "sampling/kernels.h"
-#include "sampling/tile_levels.h"
 
 #include <float.h>
-
-_Static_assert((int)POOL_RUN_MOST <= (int)TILE_SAMPLES_MOST, "a run is shared out at once");
 
 enum {
     GROUP = 32, /* samples drawn side by side */
@@ -52,8 +49,7 @@ static void invert_group(search_group *group, uint32_t count, uint32_t length)
             group->cell[i] += sums[group->first[i] + (int32_t)next] <= wholes[i] ? step : 0;
         }
     for (uint32_t i = 0; i < count; i++)
-        group->fraction[i] =
-            tables_fraction_within(sums + group->first[i], length, group->cell[i], group->fraction[i]);
+        group->fraction[i] = tables_fraction_within(sums + group->first[i], length, group->cell[i], group->fraction[i]);
 }
 
 /* A group of samples on its way from points to texels. */
@@ -119,8 +115,8 @@ static void choose_texels(const helio_tables *tables, uint32_t columns, sample_g
     }
 #pragma omp simd
     for (uint32_t i = 0; i < group->count; i++) {
-        const face_place at = tables_place(size, 0, group->rows[i], group->row.fraction[i], group->columns[i],
-                                           group->column.fraction[i]);
+        const face_place at =
+            tables_place(size, 0, group->rows[i], group->row.fraction[i], group->columns[i], group->column.fraction[i]);
         group->u[i] = at.u;
         group->v[i] = at.v;
     }
@@ -138,21 +134,15 @@ static float weighted(float radiance, float density)
     return ratio < FLT_MAX ? ratio : FLT_MAX;
 }
 
-/* What samples of all pools have: directions and radiance, in arrays `stride` floats apart. */
-static inline void store_light(float *to, size_t stride, const float direction[3], const float radiance[3])
-{
-    to[SAMPLE_X * stride] = direction[0];
-    to[SAMPLE_Y * stride] = direction[1];
-    to[SAMPLE_Z * stride] = direction[2];
-    to[SAMPLE_RED * stride] = radiance[0];
-    to[SAMPLE_GREEN * stride] = radiance[1];
-    to[SAMPLE_BLUE * stride] = radiance[2];
-}
-
 static void store_sample(helio_pools *pools, uint32_t pool, uint32_t index, const helio_table_sample *sample)
 {
     float *to = pools_array(pools, pool, SAMPLE_X) + index;
-    store_light(to, pools->stride, sample->direction, sample->radiance);
+    to[SAMPLE_X * pools->stride] = sample->direction[0];
+    to[SAMPLE_Y * pools->stride] = sample->direction[1];
+    to[SAMPLE_Z * pools->stride] = sample->direction[2];
+    to[SAMPLE_RED * pools->stride] = sample->radiance[0];
+    to[SAMPLE_GREEN * pools->stride] = sample->radiance[1];
+    to[SAMPLE_BLUE * pools->stride] = sample->radiance[2];
     to[SAMPLE_DENSITY * pools->stride] = sample->density;
     to[SAMPLE_WEIGHTED_RED * pools->stride] = weighted(sample->radiance[0], sample->density);
     to[SAMPLE_WEIGHTED_GREEN * pools->stride] = weighted(sample->radiance[1], sample->density);
@@ -177,7 +167,7 @@ void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32
     }
 }
 
-/* ---- samples of tiles, and pools of bins made of them ---- */
+/* ---- lists of tiles ---- */
 
 /* Points first ... of 2^bits: one in each of that many strata of y, in their order. Together they are a (0,2)-net, and
  * those at equal steps have columns as far apart as rows. */
@@ -322,126 +312,6 @@ void KERNEL(draw_tiles)(normal_bins *bins, const helio_tables *tables, uint32_t 
         }
     }
     draw_pieces(bins, tables, pieces, count);
-}
-
-/* Samples of the pool of a bin that are drawn together, in the order in which they are stored. */
-typedef struct bin_samples {
-    alignas(64) uint32_t positions[POOL_RUN_MOST], elements[POOL_RUN_MOST];
-    alignas(64) float probabilities[POOL_RUN_MOST], scales[POOL_RUN_MOST]; /* of the tile given the bin; 1 / that */
-    alignas(64) float slopes[POOL_RUN_MOST], offsets[POOL_RUN_MOST];       /* see control_line */
-    alignas(64) float arrays[POOL_ARRAYS][POOL_RUN_MOST];                  /* what the pool holds in the end */
-} bin_samples;
-
-/* Samples of a run lie in the order of their numbers with the bits reversed, and some of them flipped at random: so
- * each aligned window of a power of two has one of each of that many parts of the run, and any place holds each of the
- * samples with the same probability. */
-static void order_run(const tile_samples *drawn, uint32_t *restrict positions, uint32_t *restrict elements)
-{
-    alignas(64) uint32_t numbers[POOL_RUN_MOST];
-    const uint32_t flipped = tile_tree_random(drawn->seed, TILE_TREE_ORDER), run = drawn->count;
-    const int unused = __builtin_clz(run) + 1; /* bits: runs are powers of two */
-#pragma omp simd
-    for (uint32_t i = 0; i < run; i++)
-        numbers[i] = (reverse_bits(i) ^ flipped) >> unused;
-    for (uint32_t i = 0; i < run; i++) {
-        positions[i] = drawn->nodes[numbers[i]];
-        elements[i] = drawn->places[numbers[i]];
-    }
-}
-
-static void weigh_samples(const normal_bins *bins, uint32_t bin, const uint32_t *restrict sums, uint32_t count,
-                          bin_samples *restrict samples)
-{
-    const tiles *restrict t = bins->tiles;
-    const normal_bin b = bins->bins[bin];
-    const float share = bins->shares[bin];
-#pragma omp simd
-    for (uint32_t i = 0; i < count; i++) {
-        const uint32_t tile = samples->positions[i];
-        const float cosine = b.centre.x * t->x[tile] + b.centre.y * t->y[tile] + b.centre.z * t->z[tile];
-        const control_line line = control_line_of(&b, cosine);
-        samples->slopes[i] = line.slope;
-        samples->offsets[i] = line.offset;
-        samples->probabilities[i] = (float)(int32_t)(sums[tile + 1] - sums[tile]) * share; /* below 2^31 */
-        samples->scales[i] = 1.0f / samples->probabilities[i];
-    }
-}
-
-/* What a sample is worth given the bin: weighted is finite here too. */
-static inline void scale_light(const listed_sample *restrict sample, float scale, float *restrict light)
-{
-#pragma omp simd
-    for (int c = 0; c < 4; c++) {
-        const float product = sample->weighted[c] * scale;
-        light[c] = product < FLT_MAX ? product : FLT_MAX;
-    }
-}
-
-/* Adds what a sample stands for, see control.h. */
-static inline void add_known(const listed_sample *sample, float slope, float offset, const float *restrict light,
-                             control_matrix *restrict sum)
-{
-    const float line[4] = {slope, slope, slope, offset};
-    float factors[4];
-#pragma omp simd
-    for (int row = 0; row < 4; row++)
-        factors[row] = line[row] * sample->direction[row];
-    for (int row = 0; row < 4; row++)
-#pragma omp simd
-        for (int c = 0; c < 4; c++)
-            sum->rows[row][c] += factors[row] * light[c];
-}
-
-/* Takes the samples of a chunk from their lists, and finds the sums up to its end. */
-static inline void take_chunk(const listed_sample *listed, uint32_t first, bin_samples *samples,
-                              const control_matrix *before, control_matrix *after)
-{
-    control_matrix sum = {{{0}}};
-    for (uint32_t i = first; i < first + CONTROL_CHUNK; i++) {
-        const listed_sample *sample = &listed[samples->elements[i]];
-        float light[4];
-        scale_light(sample, samples->scales[i], light);
-        store_light(&samples->arrays[0][i], POOL_RUN_MOST, sample->direction, sample->radiance);
-        samples->arrays[SAMPLE_DENSITY][i] = samples->probabilities[i] * sample->density;
-        samples->arrays[SAMPLE_WEIGHTED_RED][i] = light[0];
-        samples->arrays[SAMPLE_WEIGHTED_GREEN][i] = light[1];
-        samples->arrays[SAMPLE_WEIGHTED_BLUE][i] = light[2];
-        add_known(sample, samples->slopes[i], samples->offsets[i], light, &sum);
-    }
-    for (int row = 0; row < 4; row++)
-        for (int c = 0; c < 4; c++)
-            after->rows[row][c] = sum.rows[row][c] + before->rows[row][c];
-}
-
-/* Whole runs, as many as fit. */
-static void draw_runs(helio_pools *pools, uint32_t bin, const tile_levels *levels, uint32_t first, uint32_t count,
-                      uint32_t seed, tile_samples *drawn)
-{
-    const normal_bins *bins = pools->bins;
-    const uint32_t run = pools_run_of_bin(pools);
-    control_matrix *control = control_sums(pools->control, bin) + first / CONTROL_CHUNK;
-    bin_samples samples;
-    for (uint32_t done = 0; done < count; done += run) {
-        tile_levels_draw(levels, bins->list_starts, run, hash_combine(seed, (first + done) / run), drawn);
-        for (uint32_t i = 0; i < run; i++)
-            __builtin_prefetch(&bins->listed[drawn->places[i]]);
-        order_run(drawn, samples.positions + done, samples.elements + done);
-    }
-    weigh_samples(bins, bin, levels->tiles, count, &samples);
-    for (uint32_t i = 0; i < count; i += CONTROL_CHUNK, control++)
-        take_chunk(bins->listed, i, &samples, control, control + 1);
-    for (int array = 0; array < POOL_ARRAYS; array++)
-        memcpy(pools_array(pools, bin, (enum sample_array)array) + first, samples.arrays[array], count * sizeof(float));
-}
-
-void KERNEL(draw_bin)(helio_pools *pools, uint32_t bin, uint32_t seed)
-{
-    const uint32_t length = pools->pool_length, most = length < POOL_RUN_MOST ? length : POOL_RUN_MOST;
-    tile_levels levels;
-    tile_samples drawn = {0};
-    tile_levels_make(normal_bins_sums(pools->bins, bin), pools->bins->tiles->count, &levels);
-    for (uint32_t first = 0; first < length; first += most)
-        draw_runs(pools, bin, &levels, first, most, seed, &drawn);
 }
 
 /* ---- taking samples ---- */

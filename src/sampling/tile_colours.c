@@ -9,8 +9,9 @@
 _Static_assert((int)COLOUR_TILES == (int)TILES_MOST, "a colour for each tile");
 
 enum {
-    LEAST_CELLS = 32,  /* along an edge of a face, see find_moments() */
-    BAND_COLUMNS = 256 /* texels of a row of a band, unless a tile has more: sums and moments stay in the nearest cache */
+    LEAST_CELLS = 32, /* along an edge of a face, see find_moments() */
+    BAND_COLUMNS =
+        256 /* texels of a row of a band, unless a tile has more: sums and moments stay in the nearest cache */
 };
 
 typedef struct colour_work {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * tile_levels.h - the tree of tile_tree.h for all samples of a bin at once, level by level, by steps of each node's own;
- * for kernels.
+ * tile_levels.h - the tree of tile_tree.h for all samples of a bin at once, level by level, by steps of each node's
+ * own; for kernels.
  *
  * No group is left out, so that nodes are known by their numbers: the children of node k are nodes 16 k to 16 k + 15 of
  * the next level. On each level a sample is put at its place in the node, and lies in the child before which as many
