@@ -55,7 +55,7 @@ void main()
     const uint start = STATE.list_starts.at[position], length = STATE.list_starts.at[position + 1u] - start;
     const uint element = start + tree_element(s, seed, position, length);
     const float probability = float(weight) * STATE.bin_shares.at[bin];
-    const vec4 direction = STATE.listed.at[2u * element];
-    const vec3 light = min(STATE.listed.at[2u * element + 1u].rgb * (1.0 / probability), vec3(GREATEST_FLOAT));
+    const vec4 direction = vector_at(STATE.listed, 2u * element);
+    const vec3 light = min(vector_at(STATE.listed, 2u * element + 1u).rgb * (1.0 / probability), vec3(GREATEST_FLOAT));
     store_sample(sample_index, direction.xyz, probability * direction.w, light, position);
 }
