@@ -4,7 +4,7 @@
 
 set(KERNEL_SOURCES
     src/cpu/background_kernel.c src/env/exposure_kernel.c src/env/fault_kernel.c src/env/resampling_kernel.c
-    src/env/sky_kernel.c src/eval/face_points_kernel.c src/sampling/control_kernel.c
+    src/env/sky_kernel.c src/eval/face_points_kernel.c src/sampling/bins_kernel.c src/sampling/control_kernel.c
     src/sampling/light_kernel.c
     src/sampling/point_tiles_kernel.c src/sampling/points_kernel.c
     src/sampling/pools_kernel.c src/sampling/set_kernel.c src/sampling/surface_kernel.c

@@ -25,7 +25,7 @@ float bin_cosine(float reach, float cosine)
 
 float weigh(vec3 centre, float reach, uint position)
 {
-    vec4 tile = STATE.tiles.at[position];
+    vec4 tile = vector_at(STATE.tiles, position);
     precise float cosine = centre.x * tile.x + centre.y * tile.y + centre.z * tile.z;
     precise float weight = tile.w * bin_cosine(reach, cosine);
     return weight;
@@ -35,7 +35,7 @@ void main()
 {
     begin_with_state();
     const uint bin = gl_WorkGroupID.x, count = STATE.tile_count, to = bin * (count + 1u);
-    const vec4 numbers = STATE.bins.at[bin];
+    const vec4 numbers = vector_at(STATE.bins, bin);
     const vec3 centre = numbers.xyz;
     const float reach = numbers.w;
     uint largest = 0u, sum = 0u;

@@ -12,8 +12,8 @@ struct scene_material {
 
 scene_material read_material(uint index)
 {
-    const vec4 a = STEP.materials.at[3u * index], b = STEP.materials.at[3u * index + 1u];
-    const vec4 c = STEP.materials.at[3u * index + 2u];
+    const vec4 a = vector_at(STEP.materials, 3u * index), b = vector_at(STEP.materials, 3u * index + 1u);
+    const vec4 c = vector_at(STEP.materials, 3u * index + 2u);
     return scene_material(floatBitsToUint(a.w), a.rgb, b.rgb, b.w, c.x, c.y);
 }
 

@@ -5,6 +5,9 @@
 // as each barrier costs it dear. Nothing here depends on the size of subgroups, and no subgroup operation is used.
 #include "state.glsl"
 
+layout(constant_id = 31) const bool IS_SOFTWARE = false; // see pipeline.c
+#include "vectors.glsl"
+
 layout(local_size_x_id = 0) in;
 
 layout(push_constant, std430) uniform pushed

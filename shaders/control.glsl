@@ -27,10 +27,10 @@ vec3 control_difference(uint bin, uint first, uint count, vec3 normal)
     const float factor = 1.0 / float(chunks * LAYOUT_CONTROL_CHUNK);
     vec3 sum = vec3(0.0);
     for (uint row = 0u; row < LAYOUT_CONTROL_ROWS; row++) {
-        const vec3 of_samples = STATE.control_sums.at[start + chunks * LAYOUT_CONTROL_ROWS + row].rgb -
-                                STATE.control_sums.at[start + row].rgb;
+        const vec3 of_samples = vector_at(STATE.control_sums, start + chunks * LAYOUT_CONTROL_ROWS + row).rgb -
+                                vector_at(STATE.control_sums, start + row).rgb;
         sum += (row < 3u ? normal[row] : 1.0) *
-               (STATE.known.at[bin * LAYOUT_CONTROL_ROWS + row].rgb - factor * of_samples);
+               (vector_at(STATE.known, bin * LAYOUT_CONTROL_ROWS + row).rgb - factor * of_samples);
     }
     return any(isnan(sum)) || any(isinf(sum)) ? vec3(0.0) : sum;
 }

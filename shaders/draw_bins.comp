@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Pools of bins of normals, from the lists of the tiles: a sample for each thread. As draw_bin() in
-// src/sampling/pools_kernel.c. parameter[0]: samples of a pool that are shared out together.
+// src/sampling/bins_kernel.c. parameter[0]: samples of a pool that are shared out together.
 #include "common.glsl"
 #include "random.glsl"
 #include "cube.glsl"
@@ -55,7 +55,7 @@ void main()
     const uint start = STATE.list_starts.at[position], length = STATE.list_starts.at[position + 1u] - start;
     const uint element = start + tree_element(s, seed, position, length);
     const float probability = float(weight) * STATE.bin_shares.at[bin];
-    const vec4 direction = STATE.listed.at[2u * element];
-    const vec3 light = min(STATE.listed.at[2u * element + 1u].rgb * (1.0 / probability), vec3(GREATEST_FLOAT));
+    const vec4 direction = vector_at(STATE.listed, 2u * element);
+    const vec3 light = min(vector_at(STATE.listed, 2u * element + 1u).rgb * (1.0 / probability), vec3(GREATEST_FLOAT));
     store_sample(sample_index, direction.xyz, probability * direction.w, light, position);
 }

@@ -1,7 +1,7 @@
 #version 460
 // SPDX-License-Identifier: MIT
 //
-// Samples of the lists of tiles: one for each thread. As draw_tile() in src/sampling/pools_kernel.c.
+// Samples of the lists of tiles: one for each thread. As draw_tiles() in src/sampling/pools_kernel.c.
 #include "common.glsl"
 #include "random.glsl"
 #include "cube.glsl"

@@ -21,7 +21,9 @@
 #include "state.glsl"
 
 const uint KINDS = 7u, LIGHT = HELIO_LIGHT, SURFACE = HELIO_SURFACE, VISIBILITY = 0u;
+const bool IS_SOFTWARE = false;
 
+#include "vectors.glsl"
 #include "random.glsl"
 #include "cube.glsl"
 #include "elementary.glsl"

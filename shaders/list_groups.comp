@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // How many work groups the lists of points and misses are worth, by a single thread: for points side by side, for points
-// one by one, for misses. parameter[0]: threads of a group for misses.
+// one by one, for misses. parameter[0]: misses of a group.
 #include "common.glsl"
 
 const uint ACROSS = 32768u; // every device takes as many side by side

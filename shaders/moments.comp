@@ -7,6 +7,7 @@
 #include "cube.glsl"
 #include "tables.glsl"
 #include "tiles.glsl"
+#include "rectangle.glsl"
 
 shared double parts[3u * gl_WorkGroupSize.x];
 
@@ -15,11 +16,10 @@ void main()
     begin_with_state();
     const uint edge = STATE.tiles_per_edge, grid = gl_WorkGroupID.x, thread = gl_LocalInvocationID.x;
     const uint row = grid / edge % edge, column = grid % edge, face = grid / (edge * edge);
-    const uint top = tile_start(row), left = tile_start(column), columns = tile_start(column + 1u) - left;
-    const uint count = (tile_start(row + 1u) - top) * columns;
+    const uint top = tile_start(row), left = tile_start(column), rows = tile_start(row + 1u) - top;
     double angles = 0.0LF, light = 0.0LF, squares = 0.0LF;
-    for (uint i = thread; i < count; i += gl_WorkGroupSize.x) {
-        const uint y = top + i / columns, x = left + i % columns;
+    for (walk w = begin_walk(tile_start(column + 1u) - left); w.at.y < rows; go_on(w)) {
+        const uint y = top + w.at.y, x = left + w.at.x;
         const vec3 rgb = texel_radiance(texel_index(face, y, x));
         precise float luminance = 0.2126 * rgb.r + 0.7152 * rgb.g + 0.0722 * rgb.b;
         const double angle = double(STATE.solid_angles.at[y * STATE.size + x]), value = double(luminance);

@@ -29,7 +29,8 @@ const uint TECHNIQUES = LIGHT == LAYOUT_LIGHT_FACES ? LAYOUT_FACES : LIGHT == LA
 
 shading_point read_point(uint index)
 {
-    const vec4 a = STEP.points.at[3u * index], b = STEP.points.at[3u * index + 1u], c = STEP.points.at[3u * index + 2u];
+    const vec4 a = vector_at(STEP.points, 3u * index), b = vector_at(STEP.points, 3u * index + 1u);
+    const vec4 c = vector_at(STEP.points, 3u * index + 2u);
     return shading_point(floatBitsToUint(a.w), floatBitsToUint(c.w), floatBitsToUint(b.w), a.xyz, b.xyz, c.xyz);
 }
 

@@ -20,8 +20,8 @@ void add_pool_sample(prepared_point p, uint i, inout vec4 sum)
     uint index;
     float expected;
     find_sample(p, i, index, expected);
-    const vec4 direction = STATE.pools.at[index];
-    const vec3 light = STATE.pools.at[STATE.pool_stride + index].rgb; // radiance / density
+    const vec4 direction = vector_at(STATE.pools, index);
+    const vec3 light = vector_at(STATE.pools, STATE.pool_stride + index).rgb; // radiance / density
     add_light_sample(p, direction.xyz, light, direction.w, expected, SURFACE != LAYOUT_SURFACE_NONE, sum);
 }
 

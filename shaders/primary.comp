@@ -65,25 +65,27 @@ nearest_hit find_nearest(vec3 origin, vec3 direction)
     for (;;) {
         if ((node & LEAF) != 0u) {
             look_at_leaf(ray, node, hit);
-        } else {
+            if (height == 0u)
+                return hit;
+            height -= min(height, 1u); // 1, but for threads that are done: see first_of_node()
+            node = stack[height];
+            continue;
+        }
+        do {
             const uint first = first_of_node(node);
-            const vec4 a = STEP.nodes.at[first], b = STEP.nodes.at[first + 1u];
-            const vec4 c = STEP.nodes.at[first + 2u], d = STEP.nodes.at[first + 3u];
+            const vec4 a = vector_at(STEP.nodes, first), b = vector_at(STEP.nodes, first + 1u);
+            const vec4 c = vector_at(STEP.nodes, first + 2u), d = vector_at(STEP.nodes, first + 3u);
             const float left = enters_box(ray, a.xyz, b.xyz, hit.distance);
             const float right = enters_box(ray, c.xyz, d.xyz, hit.distance);
             const uint left_child = floatBitsToUint(a.w), right_child = floatBitsToUint(b.w);
-            const bool left_first = left <= right;
+            const bool left_first = left <= right, goes_down = min(left, right) < 2e38;
             if (max(left, right) < 2e38)
                 stack[height++] = left_first ? right_child : left_child;
-            if (min(left, right) < 2e38) {
-                node = left_first ? left_child : right_child;
-                continue;
-            }
-        }
-        if (height == 0u)
-            return hit;
-        height -= min(height, 1u); // 1, but for threads that are done: see first_of_node()
-        node = stack[height];
+            if (!goes_down && height == 0u)
+                return hit;
+            height -= goes_down ? 0u : min(height, 1u);
+            node = goes_down ? (left_first ? left_child : right_child) : stack[height];
+        } while (goes_on_down(node));
     }
 }
 
@@ -104,11 +106,11 @@ nearest_hit find_seen(vec3 origin, vec3 direction, uint pixel)
 surface_hit resolve(nearest_hit hit, vec3 direction)
 {
     const vec3 weights = hit.weights;
-    const vec4 plane = STEP.normals.at[4u * hit.triangle]; // whole: Mesa 22.3 takes .w alone for .x
+    const vec4 plane = vector_at(STEP.normals, 4u * hit.triangle); // whole: Mesa 22.3 takes .w alone for .x
     vec3 position = vec3(0.0), smooth_normal = vec3(0.0), face = plane.xyz;
     for (uint i = 0u; i < 3u; i++) {
-        position += weights[i] * STEP.triangles.at[3u * hit.triangle + i].xyz;
-        smooth_normal += weights[i] * STEP.normals.at[4u * hit.triangle + 1u + i].xyz;
+        position += weights[i] * vector_at(STEP.triangles, 3u * hit.triangle + i).xyz;
+        smooth_normal += weights[i] * vector_at(STEP.normals, 4u * hit.triangle + 1u + i).xyz;
     }
     face = dot(face, direction) > 0.0 ? -face : face;
     const float size = length(smooth_normal);

@@ -50,9 +50,9 @@ struct triangle_meeting {
 
 bool meets_triangle(shadow_ray ray, uint triangle, out triangle_meeting at)
 {
-    const vec3 a = sheared(ray, STEP.triangles.at[3u * triangle].xyz);
-    const vec3 b = sheared(ray, STEP.triangles.at[3u * triangle + 1u].xyz);
-    const vec3 c = sheared(ray, STEP.triangles.at[3u * triangle + 2u].xyz);
+    const vec3 a = sheared(ray, vector_at(STEP.triangles, 3u * triangle).xyz);
+    const vec3 b = sheared(ray, vector_at(STEP.triangles, 3u * triangle + 1u).xyz);
+    const vec3 c = sheared(ray, vector_at(STEP.triangles, 3u * triangle + 2u).xyz);
     precise float u = c.x * b.y - c.y * b.x, v = a.x * c.y - a.y * c.x, w = b.x * a.y - b.y * a.x;
     const float determinant = u + v + w, scale = 1.0 / determinant;
     at = triangle_meeting(vec3(u, v, w) * scale, (u * a.z + v * b.z + w * c.z) * scale);
@@ -65,6 +65,12 @@ bool meets_triangle(shadow_ray ray, uint triangle, out triangle_meeting at)
 uint first_of_node(uint node)
 {
     return (node & LEAF) != 0u ? 0u : 4u * node;
+}
+
+// Software does all of a loop for each of its threads, so that those which have come to a leaf wait there for the others.
+bool goes_on_down(uint node)
+{
+    return IS_SOFTWARE && (node & LEAF) == 0u;
 }
 
 bool meets_leaf(shadow_ray ray, uint leaf)
@@ -90,16 +96,18 @@ bool is_occluded(vec3 origin, vec3 direction)
             node = stack[--height];
             continue;
         }
-        const uint first = first_of_node(node);
-        const vec4 a = STEP.nodes.at[first], b = STEP.nodes.at[first + 1u];
-        const vec4 c = STEP.nodes.at[first + 2u], d = STEP.nodes.at[first + 3u];
-        const bool left = meets_box(ray, a.xyz, b.xyz), right = meets_box(ray, c.xyz, d.xyz);
-        const uint left_child = floatBitsToUint(a.w), right_child = floatBitsToUint(b.w);
-        if (left && right)
-            stack[height++] = right_child;
-        else if (!left && !right && height == 0u)
-            return false;
-        node = left ? left_child : right ? right_child : stack[--height];
+        do {
+            const uint first = first_of_node(node);
+            const vec4 a = vector_at(STEP.nodes, first), b = vector_at(STEP.nodes, first + 1u);
+            const vec4 c = vector_at(STEP.nodes, first + 2u), d = vector_at(STEP.nodes, first + 3u);
+            const bool left = meets_box(ray, a.xyz, b.xyz), right = meets_box(ray, c.xyz, d.xyz);
+            const uint left_child = floatBitsToUint(a.w), right_child = floatBitsToUint(b.w);
+            if (left && right)
+                stack[height++] = right_child;
+            else if (!left && !right && height == 0u)
+                return false;
+            node = left ? left_child : right ? right_child : stack[--height];
+        } while (goes_on_down(node));
     }
 }
 
@@ -107,7 +115,7 @@ bool is_occluded(vec3 origin, vec3 direction)
 // away; 4: it is of the shadow catcher.
 vec4 read_origin(uint point)
 {
-    return VISIBILITY != 0u ? STEP.origins.at[point] : vec4(0.0);
+    return VISIBILITY != 0u ? vector_at(STEP.origins, point) : vec4(0.0);
 }
 
 bool is_of_catcher(vec4 origin)

@@ -9,6 +9,7 @@
 #include "scan.glsl"
 
 layout(constant_id = 1) const uint TEXELS = 4u; // neighbours that a thread takes at a time
+layout(constant_id = 2) const bool READS_PAIRS = false; // of texels, of which there is an even number: as vector_at()
 
 const float LEAST_WEIGHT = 1.17549435e-38; // 2^-126
 
@@ -24,12 +25,21 @@ struct row_of_texels {
 
 float weights[TEXELS]; // of this thread's, from `begin` on
 
+layout(buffer_reference, std430, buffer_reference_align = 8) buffer pairs_of_numbers
+{
+    uint64_t at[];
+};
+
+vec2 pair_at(pairs_of_numbers pairs, uint index)
+{
+    return uintBitsToFloat(unpackUint2x32(pairs.at[index]));
+}
+
 // Luminance x relative solid angle. A lit texel weighs something, however dark: told by bits, as devices may take the
 // smallest floats for 0.
-float weigh(row_of_texels row, uint column)
+float weigh(row_of_texels row, vec3 rgb, float angle)
 {
-    const vec3 rgb = row.cube.at[row.first + column];
-    precise float relative = row.by_angle ? row.angles.at[row.first_angle + column] * row.quarter_texels : 1.0;
+    precise float relative = row.by_angle ? angle * row.quarter_texels : 1.0;
     precise float luminance = 0.2126 * rgb.r + 0.7152 * rgb.g + 0.0722 * rgb.b;
     const ivec3 bits = floatBitsToInt(rgb);
     bool is_lit = max(max(bits.r, bits.g), bits.b) > 0;
@@ -41,10 +51,33 @@ float weigh(row_of_texels row, uint column)
     return is_lit && !(weight > LEAST_WEIGHT) ? LEAST_WEIGHT : max(weight, 0.0);
 }
 
+float weigh_texel(row_of_texels row, uint column)
+{
+    const float angle = row.by_angle ? row.angles.at[row.first_angle + column] : 1.0;
+    return weigh(row, row.cube.at[row.first + column], angle);
+}
+
+vec2 weigh_pair(row_of_texels row, uint column)
+{
+    pairs_of_numbers numbers = pairs_of_numbers(row.cube), angles = pairs_of_numbers(row.angles);
+    const uint first = (row.first + column) / 2u * 3u;
+    const vec2 a = pair_at(numbers, first), b = pair_at(numbers, first + 1u), c = pair_at(numbers, first + 2u);
+    const vec2 angle = row.by_angle ? pair_at(angles, (row.first_angle + column) / 2u) : vec2(1.0);
+    return vec2(weigh(row, vec3(a, b.x), angle.x), weigh(row, vec3(b.y, c), angle.y));
+}
+
 void weigh_some(row_of_texels row, uint begin)
 {
-    for (uint i = 0u; i < TEXELS; i++)
-        weights[i] = begin + i < row.size ? weigh(row, begin + i) : 0.0;
+    for (uint i = 0u; i < TEXELS; i += READS_PAIRS ? 2u : 1u) {
+        const bool is_inside = begin + i < row.size;
+        if (READS_PAIRS) {
+            const vec2 pair = is_inside ? weigh_pair(row, begin + i) : vec2(0.0);
+            weights[i] = pair.x;
+            weights[i + 1u] = pair.y;
+        } else {
+            weights[i] = is_inside ? weigh_texel(row, begin + i) : 0.0;
+        }
+    }
 }
 
 uint find_largest(row_of_texels row)

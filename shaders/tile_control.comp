@@ -7,6 +7,7 @@
 #include "cube.glsl"
 #include "tables.glsl"
 #include "tiles.glsl"
+#include "rectangle.glsl"
 
 const uint LEAST_CELLS = 32u, WAYS = 3u;
 
@@ -18,12 +19,13 @@ vec3 integrate(float u, float v, float width, uint split)
 {
     const float area = width * width;
     vec3 sum = vec3(0.0);
-    for (uint i = 0u; i < split * split; i++) {
-        const vec2 at = vec2(u, v) + (vec2(i % split, i / split) + 0.5) * width;
-        const float q = 1.0 / (1.0 + at.x * at.x + at.y * at.y), square = area * q * q, term = area / 3.0 * q;
-        const float side = square * (1.0 + term * (1.0 - 3.0 * q));
-        sum += vec3(square * (1.0 + term * (2.0 - 3.0 * q)), side * at.x, side * at.y);
-    }
+    for (uint row = 0u; row < split; row++)
+        for (uint column = 0u; column < split; column++) {
+            const vec2 at = vec2(u, v) + (vec2(column, row) + 0.5) * width;
+            const float q = 1.0 / (1.0 + at.x * at.x + at.y * at.y), square = area * q * q, term = area / 3.0 * q;
+            const float side = square * (1.0 + term * (1.0 - 3.0 * q));
+            sum += vec3(square * (1.0 + term * (2.0 - 3.0 * q)), side * at.x, side * at.y);
+        }
     return sum;
 }
 
@@ -31,7 +33,7 @@ void write_tile(uint position, uint face, vec3 axis, vec3 right, vec3 down)
 {
     const vec3 along = cube_point(face, 0.0, 0.0);
     const vec3 across = cube_point(face, 1.0, 0.0) - along, below = cube_point(face, 0.0, 1.0) - along;
-    const vec3 centre = STATE.tiles.at[position].xyz;
+    const vec3 centre = vector_at(STATE.tiles, position).xyz;
     vec3 towards = vec3(0.0);
     for (uint row = 0u; row < 3u; row++) {
         const vec3 moment = axis * along[row] + right * across[row] + down * below[row];
@@ -49,12 +51,12 @@ void main()
     begin_with_state();
     const uint edge = STATE.tiles_per_edge, grid = gl_WorkGroupID.x, thread = gl_LocalInvocationID.x;
     const uint row = grid / edge % edge, column = grid % edge, face = grid / (edge * edge);
-    const uint top = tile_start(row), left = tile_start(column), columns = tile_start(column + 1u) - left;
-    const uint count = (tile_start(row + 1u) - top) * columns, split = (LEAST_CELLS + STATE.size - 1u) / STATE.size;
+    const uint top = tile_start(row), left = tile_start(column), rows = tile_start(row + 1u) - top;
+    const uint split = (LEAST_CELLS + STATE.size - 1u) / STATE.size;
     const float texel = 2.0 / float(STATE.size);
     vec3 axis = vec3(0.0), right = vec3(0.0), down = vec3(0.0);
-    for (uint i = thread; i < count; i += gl_WorkGroupSize.x) {
-        const uint y = top + i / columns, x = left + i % columns;
+    for (walk w = begin_walk(tile_start(column + 1u) - left); w.at.y < rows; go_on(w)) {
+        const uint y = top + w.at.y, x = left + w.at.x;
         const vec3 rgb = texel_radiance(texel_index(face, y, x));
         const vec3 ways =
             integrate(float(x) * texel - 1.0, float(y) * texel - 1.0, texel / float(split), split);

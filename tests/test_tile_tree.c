@@ -4,7 +4,7 @@
  * change. */
 #include "support.h"
 
-#include "sampling/tile_tree.h"
+#include "sampling/tile_levels.h"
 
 #include <math.h>
 #include <string.h>
@@ -126,6 +126,44 @@ static void parts_are_parts_of_the_whole(void **state)
             assert_memory_equal(part, whole + first, count * sizeof *part);
         }
     }
+}
+
+/* ---- level by level ---- */
+
+static void make_levels(const wood *w, tile_levels *levels)
+{
+    uint32_t sums[TILES_MOST + 1] = {0};
+    for (uint32_t i = 0; i < w->count; i++)
+        sums[i + 1] = sums[i] + w->all[i];
+    tile_levels_make(sums, w->count, levels);
+}
+
+static void check_levels(const wood *w, uint32_t count, uint32_t seed)
+{
+    tile_draw draws[MOST];
+    tile_levels levels;
+    tile_samples samples = {0};
+    make_levels(w, &levels);
+    tile_tree_draw(&w->tree, false, count, 0, count, seed, draws);
+    tile_levels_draw(&levels, w->list_starts, count, seed, &samples);
+    for (uint32_t i = 0; i < count; i++) {
+        assert_int_equal(samples.nodes[i], draws[i].position);
+        assert_int_equal(samples.places[i], draws[i].element);
+        assert_int_equal(levels.tiles[samples.nodes[i] + 1] - levels.tiles[samples.nodes[i]], draws[i].weight);
+    }
+}
+
+static void levels_draw_what_the_tree_draws(void **state)
+{
+    (void)state;
+    static const uint32_t samples[] = {1, 2, 7, 16, 64, 255, TILE_SAMPLES_MOST};
+    wood w;
+    for (int c = 0; c < COUNTS; c++)
+        for (size_t s = 0; s < sizeof samples / sizeof samples[0]; s++)
+            for (uint32_t seed = 0; seed < 20; seed++) {
+                sow(&w, counts[c], 21 + seed);
+                check_levels(&w, samples[s], seed);
+            }
 }
 
 /* ---- as often as weights say ---- */
@@ -279,6 +317,7 @@ int main(void)
         cmocka_unit_test(all_samples_get_a_tile_that_has_weight),
         cmocka_unit_test(a_single_unit_of_weight_is_found),
         cmocka_unit_test(parts_are_parts_of_the_whole),
+        cmocka_unit_test(levels_draw_what_the_tree_draws),
         cmocka_unit_test(tiles_get_samples_as_often_as_weights_say),
         cmocka_unit_test(samples_stay_where_weights_do),
         cmocka_unit_test(groups_without_weight_may_be_left_out_or_not),

@@ -25,7 +25,7 @@ static inline uint32_t hash_combine(uint32_t a, uint32_t b)
 /* The upper 24 bits as a float in [0, 1): never 1, which a plain division could round to. */
 static inline float unit_float(uint32_t x)
 {
-    return (float)(x >> 8) * 0x1p-24f;
+    return (float)(int32_t)(x >> 8) * 0x1p-24f;
 }
 
 static inline uint32_t reverse_bits(uint32_t x)

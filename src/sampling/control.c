@@ -54,21 +54,6 @@ void control_update(light_control *c, const normal_bins *bins)
 
 /* ---- samples ---- */
 
-static void sum_pool(void *data, size_t bin)
-{
-    const light_control *c = data;
-    control_matrix *sums = c->sums + bin * (c->chunks + 1);
-    for (uint32_t chunk = 0; chunk < c->chunks; chunk++)
-        for (int row = 0; row < 4; row++)
-            for (int i = 0; i < 4; i++)
-                sums[chunk + 1].rows[row][i] += sums[chunk].rows[row][i];
-}
-
-void control_sum_pools(light_control *c)
-{
-    context_parallel_for(c->context, c->bins, sum_pool, c);
-}
-
 float control_finite(float x)
 {
     return isfinite(x) ? x : 0.0f;
@@ -79,8 +64,7 @@ vec3 control_difference(const light_control *c, uint32_t bin, uint32_t first, ui
     const uint32_t chunks = count / CONTROL_CHUNK;
     if (chunks == 0)
         return (vec3){0, 0, 0};
-    const control_matrix *start = c->sums + (size_t)bin * (c->chunks + 1) + first / CONTROL_CHUNK,
-                         *end = start + chunks;
+    const control_matrix *start = control_sums(c, bin) + first / CONTROL_CHUNK, *end = start + chunks;
     const control_matrix *known = &c->known[bin];
     const float factor = 1.0f / (float)(chunks * CONTROL_CHUNK), n[4] = {normal.x, normal.y, normal.z, 1.0f};
     float sum[4] = {0};

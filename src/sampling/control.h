@@ -34,14 +34,11 @@ void control_destroy(light_control *c);
 /* Finds the known light of the frame. */
 void control_update(light_control *c, const normal_bins *bins);
 
-/* Where the chunks of a bin's pool are before they are summed up. */
-static inline control_matrix *control_chunks(light_control *c, uint32_t bin)
+/* The sums of a bin's pool: [chunks + 1], of which the first is 0. */
+static inline control_matrix *control_sums(const light_control *c, uint32_t bin)
 {
-    return c->sums + (size_t)bin * (c->chunks + 1) + 1;
+    return c->sums + (size_t)bin * (c->chunks + 1);
 }
-
-/* Sums up the chunks of all pools. */
-void control_sum_pools(light_control *c);
 
 /* Irradiance, in the map's unit, to be added for `count` samples of a bin's pool, from `first` on, which is a multiple
  * of the chunk. */

@@ -18,6 +18,7 @@
 #define KERNEL(name) KERNEL_NAME(name, HELIO_ISA)
 
 struct background;
+struct colour_sums;
 struct column_colours;
 struct control_matrix;
 struct exposure_columns;
@@ -28,6 +29,7 @@ struct resampling_space;
 struct view_group;
 struct sky_light;
 struct sky_row;
+struct texel_moments;
 struct texel_rows;
 
 typedef struct kernel_set {
@@ -40,8 +42,15 @@ typedef struct kernel_set {
      * same bits with every instruction set. */
     uint32_t (*weigh_tiles)(const tiles *t, const normal_bin *bin, uint32_t *sums);
 
-    /* Adds rows of texels to sums over their columns. */
-    void (*add_texels)(const struct texel_rows *texels, struct column_colours *sums);
+    /* The integrals of direction over rows of texels; and adds radiance x these to sums over the columns. rgb:
+     * [rows][count][3], rows `stride` floats apart. */
+    void (*find_moments)(const struct texel_rows *texels, struct texel_moments *moments);
+    void (*add_texels)(const struct texel_rows *texels, const float *rgb, size_t stride,
+                       const struct texel_moments *moments, struct column_colours *sums);
+
+    /* Sums of columns first ... end - 1. u: of the columns. */
+    struct colour_sums (*sum_columns)(const struct column_colours *columns, const float *u, uint32_t first,
+                                      uint32_t end);
 
     /* The known light of a bin of normals, from that of the tiles. */
     void (*know_bin)(const tiles *t, const normal_bin *bin, struct control_matrix *known);
@@ -56,11 +65,11 @@ typedef struct kernel_set {
      * The same bits with every instruction set. */
     void (*draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
 
-    /* Draws the list of a tile anew, unless it is empty. seed: of the tile. Draws samples first ... first + count - 1
-     * of the pool of a bin that is not black from the lists of the tiles. seed: of the pool. The same bits with every
+    /* Draws the lists of tiles first ... end - 1 anew. seed: of all lists. Draws the pool of a bin that is not black
+     * from the lists of the tiles, and its sums for the control variate. seed: of the pool. The same bits with every
      * instruction set. */
-    void (*draw_tile)(normal_bins *bins, const helio_tables *tables, uint32_t position, uint32_t seed);
-    void (*draw_bin)(helio_pools *pools, uint32_t bin, uint32_t first, uint32_t count, uint32_t seed);
+    void (*draw_tiles)(normal_bins *bins, const helio_tables *tables, uint32_t first, uint32_t end, uint32_t seed);
+    void (*draw_bin)(helio_pools *pools, uint32_t bin, uint32_t seed);
 
     /* Prepares points for their samples: turns their directions to the map's space, lifts views that graze, and fills
      * in counts and windows. The same bits with every instruction set. */
@@ -123,13 +132,17 @@ _Static_assert(HELIO_LANES <= POOL_PADDING && BLOCK_SAMPLES % HELIO_LANES == 0 &
 
 row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, float level, uint32_t size, uint32_t *sums);
 uint32_t KERNEL(weigh_tiles)(const tiles *t, const normal_bin *bin, uint32_t *sums);
-void KERNEL(add_texels)(const struct texel_rows *texels, struct column_colours *sums);
+void KERNEL(find_moments)(const struct texel_rows *texels, struct texel_moments *moments);
+void KERNEL(add_texels)(const struct texel_rows *texels, const float *rgb, size_t stride,
+                        const struct texel_moments *moments, struct column_colours *sums);
+struct colour_sums KERNEL(sum_columns)(const struct column_colours *columns, const float *u, uint32_t first,
+                                       uint32_t end);
 void KERNEL(know_bin)(const tiles *t, const normal_bin *bin, struct control_matrix *known);
 void KERNEL(mix_hues)(const tiles *t, point_tiles *p);
 void KERNEL(weigh_point)(const tiles *t, const tile_lobe *lobe, point_tiles *p);
 void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
-void KERNEL(draw_tile)(normal_bins *bins, const helio_tables *tables, uint32_t position, uint32_t seed);
-void KERNEL(draw_bin)(helio_pools *pools, uint32_t bin, uint32_t first, uint32_t count, uint32_t seed);
+void KERNEL(draw_tiles)(normal_bins *bins, const helio_tables *tables, uint32_t first, uint32_t end, uint32_t seed);
+void KERNEL(draw_bin)(helio_pools *pools, uint32_t bin, uint32_t seed);
 void KERNEL(prepare_points)(const helio_pools *pools, const helio_estimate_desc *desc, point_block *block);
 void KERNEL(round_counts)(uint32_t samples, point_block *block);
 void KERNEL(sum_light)(const helio_pools *pools, uint32_t samples, const point_block *block, const brdf *surfaces,

@@ -175,9 +175,7 @@ static void draw_lists(void *data, size_t piece)
     list_work *work = data;
     uint32_t first = (uint32_t)piece * TILES_AT_ONCE, end = first + TILES_AT_ONCE;
     end = end < work->bins->tiles->count ? end : work->bins->tiles->count;
-    for (uint32_t i = first; i < end; i++)
-        kernels_of(context_isa(work->bins->context))
-            ->draw_tile(work->bins, work->tables, i, hash_combine(work->seed, i));
+    kernels_of(context_isa(work->bins->context))->draw_tiles(work->bins, work->tables, first, end, work->seed);
 }
 
 void normal_bins_draw_lists(normal_bins *b, const helio_tables *tables, uint32_t seed)

@@ -26,12 +26,12 @@ typedef struct normal_bin {
                     between centre and normal + that between tile and direction; above 1 for all tiles */
 } normal_bin;
 
-/* A direction drawn inside of a tile. */
+/* A direction drawn inside of a tile. In fours, which registers like. */
 typedef struct listed_sample {
-    float direction[3], radiance[3], weighted[3]; /* weighted: radiance / density */
-    float density;                                /* 1/sr, given the tile */
-    float hue[3];     /* radiance / density x cosine to the tile's centre, in relation to the tile's brightness */
-    float padding[3]; /* to a cache line */
+    float direction[4];         /* and its cosine to the tile's centre */
+    float radiance[3], density; /* 1/sr, given the tile */
+    float weighted[4];          /* radiance / density, and 0 */
+    float hue[4];               /* weighted x that cosine, in relation to the tile's brightness, and 0 */
 } listed_sample;
 
 typedef struct normal_bins {

@@ -14,7 +14,7 @@ enum {
     DEFAULT_LENGTH_OF_BIN = 256,
     LEAST_LENGTH = 64,
     GREATEST_LENGTH = 65536,
-    PIECE = POOL_RUN_MOST
+    PIECE = 256 /* samples that a thread draws at a time */
 };
 
 static helio_status resolve_desc(const helio_pools_desc *given, helio_pools_desc *desc)
@@ -112,7 +112,7 @@ uint32_t helio_pools_sample_limit(const helio_pools *pools)
 
 typedef struct drawing {
     helio_pools *pools;
-    void (*draw)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
+    const kernel_set *kernels;
     uint32_t seed;
 } drawing;
 
@@ -135,9 +135,6 @@ static void clear_samples(helio_pools *pools, uint32_t pool, uint32_t first, uin
 {
     for (int array = 0; array < POOL_ARRAYS; array++)
         memset(pools_array(pools, pool, (enum sample_array)array) + first, 0, count * sizeof(float));
-    if (pools->control != NULL)
-        memset(control_chunks(pools->control, pool) + first / CONTROL_CHUNK, 0,
-               count / CONTROL_CHUNK * sizeof(control_matrix));
 }
 
 static void draw_piece(void *data, size_t piece)
@@ -150,7 +147,33 @@ static void draw_piece(void *data, size_t piece)
     if (is_black(pools, pool))
         clear_samples(pools, pool, first, count);
     else
-        work->draw(pools, pool, first, count, hash_combine(work->seed, pool));
+        work->kernels->draw_pool(pools, pool, first, count, hash_combine(work->seed, pool));
+}
+
+/* Whole, as their sums run through all samples. */
+static void draw_pool_of_bin(void *data, size_t index)
+{
+    const drawing *work = data;
+    helio_pools *pools = work->pools;
+    const uint32_t bin = (uint32_t)index;
+    if (is_black(pools, bin)) {
+        clear_samples(pools, bin, 0, pools->pool_length);
+        memset(control_sums(pools->control, bin), 0, (pools->control->chunks + (size_t)1) * sizeof(control_matrix));
+    } else
+        work->kernels->draw_bin(pools, bin, hash_combine(work->seed, bin));
+}
+
+static void draw_bins(drawing *work)
+{
+    helio_pools *pools = work->pools;
+    const helio_tables *tables = pools->tables;
+    normal_bins_update(pools->bins, tables);
+    if (pools->frame != tables->frame) {
+        control_update(pools->control, pools->bins);
+        pools->is_even = pools->is_automatic && evenness_holds(pools->bins->tiles, tables);
+    }
+    normal_bins_draw_lists(pools->bins, tables, hash_combine(work->seed, pools->count));
+    context_parallel_for(tables->environment->context, pools->count, draw_pool_of_bin, work);
 }
 
 helio_status helio_pools_draw(helio_pools *pools, uint32_t seed, uint32_t pass)
@@ -162,20 +185,11 @@ helio_status helio_pools_draw(helio_pools *pools, uint32_t seed, uint32_t pass)
         return fail(HELIO_ERR_ARGUMENT,
                     "the tables are those of frame %llu but the environment is at frame %llu; call helio_tables_update",
                     (unsigned long long)pools->tables->frame, (unsigned long long)environment->frame);
-    const kernel_set *kernels = kernels_of(context_isa(environment->context));
-    drawing work = {.pools = pools, .draw = kernels->draw_pool, .seed = hash_combine(seed, pass)};
-    if (pools->bins != NULL) {
-        work.draw = kernels->draw_bin;
-        normal_bins_update(pools->bins, pools->tables);
-        if (pools->frame != environment->frame) {
-            control_update(pools->control, pools->bins);
-            pools->is_even = pools->is_automatic && evenness_holds(pools->bins->tiles, pools->tables);
-        }
-        normal_bins_draw_lists(pools->bins, pools->tables, hash_combine(work.seed, pools->count));
-    }
-    context_parallel_for(environment->context, (size_t)pools->count * pieces_per_pool(pools), draw_piece, &work);
-    if (pools->control != NULL)
-        control_sum_pools(pools->control);
+    drawing work = {pools, kernels_of(context_isa(environment->context)), hash_combine(seed, pass)};
+    if (pools->bins != NULL)
+        draw_bins(&work);
+    else
+        context_parallel_for(environment->context, (size_t)pools->count * pieces_per_pool(pools), draw_piece, &work);
     pools->frame = environment->frame;
     return HELIO_OK;
 }

@@ -1,50 +1,63 @@
 /* SPDX-License-Identifier: MIT
  *
- * Samples of a pool: scrambled points, and the inversion of the tables at them. Several searches go on at once, one
- * step of each after the other, so that they wait for memory together. */
+ * Samples of pools of faces, and of the lists of tiles: scrambled points, and the inversion of the tables at them.
+ * Several searches go on at once, one step of each after the other, so that they wait for memory together. */
 #include "core/random.h"
 #include "sampling/kernels.h"
-#include "sampling/tile_tree.h"
 
 #include <float.h>
 
-enum { GROUP = 32 }; /* samples drawn together */
+enum {
+    GROUP = 32, /* samples drawn side by side */
+    PIECES = 8, /* of lists, drawn one step of each after the other */
+};
 
 /* Searches that go on together. fraction is that of tables_invert(): in x, out where x lies inside of the cell. */
 typedef struct search_group {
-    uint32_t fraction[GROUP];
-    const uint32_t *sums[GROUP]; /* [length + 1] each, perhaps a piece of longer ones */
-    uint32_t cell[GROUP];
+    const uint32_t *sums;
+    alignas(64) int32_t first[GROUP]; /* of the [length + 1] sums that are searched, perhaps a piece of longer ones */
+    alignas(64) uint32_t fraction[GROUP];
+    alignas(64) uint32_t cell[GROUP];
 } search_group;
+
+/* What prefix sums must exceed for the cell that holds x to end. */
+static void find_wholes(search_group *group, uint32_t count, uint32_t length, uint32_t *restrict wholes)
+{
+    const uint32_t *sums = group->sums;
+#pragma omp simd
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t before = sums[group->first[i]], total = sums[group->first[i] + (int32_t)length] - before;
+        wholes[i] = before + (uint32_t)(((uint64_t)group->fraction[i] * total) >> 32);
+        group->cell[i] = 0;
+    }
+}
 
 /* tables_invert() for each: as many steps for all, without branches. */
 static void invert_group(search_group *group, uint32_t count, uint32_t length)
 {
-    uint32_t whole[GROUP], highest = 1;
-    for (uint32_t i = 0; i < count; i++) {
-        const uint32_t *sums = group->sums[i], total = sums[length] - sums[0];
-        whole[i] = sums[0] + (uint32_t)(((uint64_t)group->fraction[i] * total) >> 32);
-        group->cell[i] = 0;
-    }
+    alignas(64) uint32_t wholes[GROUP];
+    const uint32_t *sums = group->sums;
+    uint32_t highest = 1;
+    find_wholes(group, count, length, wholes);
     while (highest < length)
         highest *= 2;
     for (uint32_t step = highest / 2; step > 0; step /= 2)
+#pragma omp simd
         for (uint32_t i = 0; i < count; i++) {
             uint32_t next = group->cell[i] + step;
             next = next < length ? next : length; /* where the sum is above whole */
-            uint32_t is_below = group->sums[i][next] <= whole[i];
-            group->cell[i] += step & (0u - is_below); /* a branch would be guessed wrong half of the time */
+            group->cell[i] += sums[group->first[i] + (int32_t)next] <= wholes[i] ? step : 0;
         }
     for (uint32_t i = 0; i < count; i++)
-        group->fraction[i] = tables_fraction_within(group->sums[i], length, group->cell[i], group->fraction[i]);
+        group->fraction[i] = tables_fraction_within(sums + group->first[i], length, group->cell[i], group->fraction[i]);
 }
 
 /* A group of samples on its way from points to texels. */
 typedef struct sample_group {
-    uint32_t count;
-    uint32_t faces[GROUP], rows[GROUP], first_columns[GROUP];
+    uint32_t count, first_column;
+    alignas(64) uint32_t faces[GROUP], rows[GROUP], columns[GROUP];
+    alignas(64) float u[GROUP], v[GROUP];
     search_group row, column;
-    face_place places[GROUP];
 } sample_group;
 
 /* Points first ... of a pool: x for the columns, y for the rows. */
@@ -64,32 +77,54 @@ static void choose_rows(const helio_pools *pools, uint32_t pool, sample_group *g
 {
     const helio_tables *tables = pools->tables;
     const bool whole = pools->parts.light == STRATEGY_LIGHT_WHOLE;
+    group->row.sums = tables->marginals;
     for (uint32_t i = 0; i < group->count; i++) {
         uint32_t *fraction = &group->row.fraction[i];
         group->faces[i] = whole ? tables_invert(tables->faces, CUBE_FACES, *fraction, fraction) : pool;
-        group->row.sums[i] = tables_face(tables, group->faces[i]).marginal;
+        group->row.first[i] = (int32_t)(group->faces[i] * (tables->size + 1));
     }
     invert_group(&group->row, group->count, tables->size);
-    for (uint32_t i = 0; i < group->count; i++) {
+    for (uint32_t i = 0; i < group->count; i++)
         group->rows[i] = group->row.cell[i];
-        group->first_columns[i] = 0;
+}
+
+/* Where the sums of each row begin, of which those of `columns` texels from first_column on are searched. */
+static void aim_at_columns(const helio_tables *tables, uint32_t first_column, uint32_t columns, sample_group *group)
+{
+    const uint32_t size = tables->size;
+    group->first_column = first_column;
+    group->column.sums = tables->rows;
+    for (uint32_t i = 0; i < group->count; i++) {
+        const uint32_t line = group->faces[i] * size + group->rows[i];
+        group->column.first[i] = (int32_t)(line * (size + 1) + first_column);
+        const uint32_t *sums = &tables->rows[group->column.first[i]];
+        __builtin_prefetch(sums);
+        __builtin_prefetch(sums + columns / 2);
+        __builtin_prefetch(sums + columns);
     }
 }
 
-/* The texel in each row, among `columns` of them, and the place in it. */
+/* The texel in each row, and the place in it. */
 static void choose_texels(const helio_tables *tables, uint32_t columns, sample_group *group)
 {
     const uint32_t size = tables->size;
-    for (uint32_t i = 0; i < group->count; i++)
-        group->column.sums[i] =
-            tables_face(tables, group->faces[i]).rows + (size_t)group->rows[i] * (size + 1) + group->first_columns[i];
     invert_group(&group->column, group->count, columns);
     for (uint32_t i = 0; i < group->count; i++) {
-        group->places[i] = tables_place(size, group->faces[i], group->rows[i], group->row.fraction[i],
-                                        group->first_columns[i] + group->column.cell[i], group->column.fraction[i]);
-        const face_place *at = &group->places[i];
-        __builtin_prefetch(environment_texel(tables->environment, at->face, at->row, at->column));
+        group->columns[i] = group->first_column + group->column.cell[i];
+        __builtin_prefetch(environment_texel(tables->environment, group->faces[i], group->rows[i], group->columns[i]));
     }
+#pragma omp simd
+    for (uint32_t i = 0; i < group->count; i++) {
+        const face_place at =
+            tables_place(size, 0, group->rows[i], group->row.fraction[i], group->columns[i], group->column.fraction[i]);
+        group->u[i] = at.u;
+        group->v[i] = at.v;
+    }
+}
+
+static face_place place_of(const sample_group *group, uint32_t i)
+{
+    return (face_place){group->faces[i], group->rows[i], group->columns[i], group->u[i], group->v[i]};
 }
 
 /* Finite, so that times 0 it is 0. */
@@ -99,21 +134,15 @@ static float weighted(float radiance, float density)
     return ratio < FLT_MAX ? ratio : FLT_MAX;
 }
 
-/* What samples of all pools have: directions and radiance, in arrays `stride` floats apart. */
-static inline void store_light(float *to, size_t stride, const float direction[3], const float radiance[3])
-{
-    to[SAMPLE_X * stride] = direction[0];
-    to[SAMPLE_Y * stride] = direction[1];
-    to[SAMPLE_Z * stride] = direction[2];
-    to[SAMPLE_RED * stride] = radiance[0];
-    to[SAMPLE_GREEN * stride] = radiance[1];
-    to[SAMPLE_BLUE * stride] = radiance[2];
-}
-
 static void store_sample(helio_pools *pools, uint32_t pool, uint32_t index, const helio_table_sample *sample)
 {
     float *to = pools_array(pools, pool, SAMPLE_X) + index;
-    store_light(to, pools->stride, sample->direction, sample->radiance);
+    to[SAMPLE_X * pools->stride] = sample->direction[0];
+    to[SAMPLE_Y * pools->stride] = sample->direction[1];
+    to[SAMPLE_Z * pools->stride] = sample->direction[2];
+    to[SAMPLE_RED * pools->stride] = sample->radiance[0];
+    to[SAMPLE_GREEN * pools->stride] = sample->radiance[1];
+    to[SAMPLE_BLUE * pools->stride] = sample->radiance[2];
     to[SAMPLE_DENSITY * pools->stride] = sample->density;
     to[SAMPLE_WEIGHTED_RED * pools->stride] = weighted(sample->radiance[0], sample->density);
     to[SAMPLE_WEIGHTED_GREEN * pools->stride] = weighted(sample->radiance[1], sample->density);
@@ -122,173 +151,167 @@ static void store_sample(helio_pools *pools, uint32_t pool, uint32_t index, cons
 
 void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed)
 {
+    sample_group group;
     for (uint32_t done = 0; done < count; done += GROUP) {
-        sample_group group = {.count = count - done < GROUP ? count - done : GROUP};
+        group.count = count - done < GROUP ? count - done : GROUP;
         choose_points(first + done, seed, &group);
         choose_rows(pools, pool, &group);
+        aim_at_columns(pools->tables, 0, pools->tables->size, &group);
         choose_texels(pools->tables, pools->tables->size, &group);
         for (uint32_t i = 0; i < group.count; i++) {
+            const face_place at = place_of(&group, i);
             helio_table_sample sample;
-            tables_sample_at(pools->tables, &group.places[i], pools_density(pools, pool, &group.places[i]), &sample);
+            tables_sample_at(pools->tables, &at, pools_density(pools, pool, &at), &sample);
             store_sample(pools, pool, first + done + i, &sample);
         }
     }
 }
 
-/* ---- samples of tiles, and pools of bins made of them ---- */
+/* ---- lists of tiles ---- */
 
-/* Points first ... of `length`, a power of two: one in each of that many strata of y, in their order. Together they are
- * a (0,2)-net, and those at equal steps have columns as far apart as rows. */
-static void choose_strata(uint32_t first, uint32_t length, uint32_t seed, sample_group *group)
+/* Points first ... of 2^bits: one in each of that many strata of y, in their order. Together they are a (0,2)-net, and
+ * those at equal steps have columns as far apart as rows. */
+static void choose_strata(uint32_t first, int bits, uint32_t seed, sample_group *group)
 {
     const uint32_t seed_x = dimension_seed(seed, 0), seed_y = dimension_seed(seed, 1);
+#pragma omp simd
     for (uint32_t i = 0; i < group->count; i++) {
-        const uint32_t index = (uint32_t)(((uint64_t)reverse_bits(first + i) * length) >> 32);
+        const uint32_t stratum = first + i, index = reverse_bits(stratum) >> (32 - bits);
         group->column.fraction[i] = owen_scramble_reversed(pascal_transform(index), seed_x);
-        const uint64_t y = ((uint64_t)(first + i) << 32) + hash_combine(seed_y, first + i);
-        group->row.fraction[i] = (uint32_t)(y / length);
+        group->row.fraction[i] = (stratum << (32 - bits)) + (hash_combine(seed_y, stratum) >> bits);
     }
 }
 
-/* The row of each sample in a tile, whose number of columns is returned. */
-static uint32_t choose_rows_of_tile(const tiles *t, uint32_t position, sample_group *group)
+/* A tile in the tables. */
+typedef struct tile_texels {
+    uint32_t position, face, row, column; /* of the first texel */
+    uint32_t rows, columns;
+} tile_texels;
+
+static tile_texels texels_of(const tiles *t, uint32_t position)
 {
     const uint32_t edge = t->per_edge, grid = t->grid[position], row = grid / edge % edge, column = grid % edge;
-    for (uint32_t i = 0; i < group->count; i++)
-        group->row.sums[i] = t->sums + (size_t)position * t->stride;
-    invert_group(&group->row, group->count, t->starts[row + 1] - t->starts[row]);
-    for (uint32_t i = 0; i < group->count; i++) {
-        group->faces[i] = grid / (edge * edge);
-        group->rows[i] = t->starts[row] + group->row.cell[i];
-        group->first_columns[i] = t->starts[column];
-    }
-    return t->starts[column + 1] - t->starts[column];
+    return (tile_texels){position,
+                         grid / (edge * edge),
+                         t->starts[row],
+                         t->starts[column],
+                         t->starts[row + 1] - t->starts[row],
+                         t->starts[column + 1] - t->starts[column]};
 }
 
-static listed_sample list_sample(const tiles *t, uint32_t position, const helio_table_sample *sample)
+static void choose_rows_of_tile(const tiles *t, const tile_texels *tile, sample_group *group)
 {
-    const vec3 centre = {t->x[position], t->y[position], t->z[position]};
-    const float towards = dot(centre, vec3_from(sample->direction)), scale = towards / t->colours.brightness[position];
-    listed_sample listed = {.density = sample->density};
-    for (int c = 0; c < 3; c++) {
-        listed.direction[c] = sample->direction[c];
-        listed.radiance[c] = sample->radiance[c];
-        listed.weighted[c] = weighted(sample->radiance[c], sample->density);
-        listed.hue[c] = listed.weighted[c] * scale;
+    group->row.sums = t->sums + (size_t)tile->position * t->stride;
+    for (uint32_t i = 0; i < group->count; i++)
+        group->row.first[i] = 0;
+    invert_group(&group->row, group->count, tile->rows);
+    for (uint32_t i = 0; i < group->count; i++) {
+        group->faces[i] = tile->face;
+        group->rows[i] = tile->row + group->row.cell[i];
     }
-    return listed;
 }
 
-void KERNEL(draw_tile)(normal_bins *bins, const helio_tables *tables, uint32_t position, uint32_t seed)
+/* What samples of a tile have beside their light: [count] each. */
+typedef struct listed_places {
+    alignas(64) float x[GROUP], y[GROUP], z[GROUP];
+    alignas(64) float towards[GROUP]; /* cosine to the tile's centre */
+    alignas(64) float density[GROUP];
+} listed_places;
+
+/* cube_direction() and their density for each. */
+static void find_places(const tiles *t, const helio_tables *tables, const tile_texels *tile, const sample_group *group,
+                        listed_places *places)
+{
+    const cube_face face = cube_faces[tile->face];
+    const vec3 centre = {t->x[tile->position], t->y[tile->position], t->z[tile->position]};
+    const float *per_weight = t->segment_densities + t->of_line[tile->column];
+    const int32_t first_line = (int32_t)(tile->face * t->size), per_edge = (int32_t)t->per_edge;
+#pragma omp simd
+    for (uint32_t i = 0; i < group->count; i++) {
+        const float u = group->u[i], v = group->v[i], radius2 = 1.0f + u * u + v * v;
+        const vec3 towards = add_scaled(add_scaled(face.axis, face.right, u), face.down, v);
+        const vec3 direction = scale(towards, 1.0f / sqrtf(radius2));
+        const int32_t texel = group->column.first[i] + (int32_t)group->column.cell[i];
+        const uint32_t weight = tables->rows[texel + 1] - tables->rows[texel];
+        places->x[i] = direction.x;
+        places->y[i] = direction.y;
+        places->z[i] = direction.z;
+        places->towards[i] = dot(centre, direction);
+        places->density[i] =
+            face_place_density(u, v, weight, per_weight[(first_line + (int32_t)group->rows[i]) * per_edge]);
+    }
+}
+
+static inline void list_sample(const listed_places *places, uint32_t i, const float *rgb, float brightness,
+                               listed_sample *listed)
+{
+    const float hue = places->towards[i] / brightness;
+    listed->direction[0] = places->x[i];
+    listed->direction[1] = places->y[i];
+    listed->direction[2] = places->z[i];
+    listed->direction[3] = places->towards[i];
+    listed->density = places->density[i];
+    for (int c = 0; c < 3; c++) {
+        listed->radiance[c] = rgb[c];
+        listed->weighted[c] = weighted(rgb[c], places->density[i]);
+        listed->hue[c] = listed->weighted[c] * hue;
+    }
+}
+
+/* Samples of a list that are drawn side by side. */
+typedef struct list_piece {
+    tile_texels tile;
+    listed_sample *listed;
+    sample_group group;
+} list_piece;
+
+static void begin_piece(const normal_bins *bins, const helio_tables *tables, uint32_t position, uint32_t first,
+                        uint32_t seed, list_piece *piece)
 {
     const uint32_t start = bins->list_starts[position], length = bins->list_starts[position + 1] - start;
-    for (uint32_t done = 0; done < length; done += GROUP) {
-        sample_group group = {.count = length - done < GROUP ? length - done : GROUP};
-        choose_strata(done, length, seed, &group);
-        choose_texels(tables, choose_rows_of_tile(bins->tiles, position, &group), &group);
-        for (uint32_t i = 0; i < group.count; i++) {
-            helio_table_sample sample;
-            tables_sample_at(tables, &group.places[i], tiles_density(bins->tiles, tables, &group.places[i]), &sample);
-            bins->listed[start + done + i] = list_sample(bins->tiles, position, &sample);
+    piece->tile = texels_of(bins->tiles, position);
+    piece->listed = &bins->listed[start + first];
+    piece->group.count = length - first < GROUP ? length - first : GROUP;
+    choose_strata(first, 31 - __builtin_clz(length), seed, &piece->group);
+    choose_rows_of_tile(bins->tiles, &piece->tile, &piece->group);
+    aim_at_columns(tables, piece->tile.column, piece->tile.columns, &piece->group);
+}
+
+static void end_piece(const normal_bins *bins, const helio_tables *tables, const list_piece *piece)
+{
+    const sample_group *group = &piece->group;
+    listed_places places;
+    find_places(bins->tiles, tables, &piece->tile, group, &places);
+    for (uint32_t i = 0; i < group->count; i++)
+        list_sample(&places, i,
+                    environment_texel(tables->environment, piece->tile.face, group->rows[i], group->columns[i]),
+                    bins->tiles->colours.brightness[piece->tile.position], &piece->listed[i]);
+}
+
+/* What one step asks of memory has come when the same step is done for all pieces. */
+static void draw_pieces(const normal_bins *bins, const helio_tables *tables, list_piece *pieces, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++)
+        choose_texels(tables, pieces[i].tile.columns, &pieces[i].group);
+    for (uint32_t i = 0; i < count; i++)
+        end_piece(bins, tables, &pieces[i]);
+}
+
+void KERNEL(draw_tiles)(normal_bins *bins, const helio_tables *tables, uint32_t first, uint32_t end, uint32_t seed)
+{
+    list_piece pieces[PIECES];
+    uint32_t count = 0;
+    for (uint32_t position = first; position < end; position++) {
+        const uint32_t length = bins->list_starts[position + 1] - bins->list_starts[position];
+        for (uint32_t done = 0; done < length; done += GROUP) {
+            begin_piece(bins, tables, position, done, hash_combine(seed, position), &pieces[count++]);
+            if (count == PIECES) {
+                draw_pieces(bins, tables, pieces, count);
+                count = 0;
+            }
         }
     }
-}
-
-static inline float finite_product(float a, float b)
-{
-    float product = a * b;
-    return product < FLT_MAX ? product : FLT_MAX;
-}
-
-/* The same as store_sample(), for a sample that a tile holds, and the probability of the tile. */
-static void store_listed(helio_pools *pools, uint32_t pool, uint32_t index, const listed_sample *sample,
-                         float probability)
-{
-    float *to = pools_array(pools, pool, SAMPLE_X) + index;
-    const float scale = 1.0f / probability;
-    store_light(to, pools->stride, sample->direction, sample->radiance);
-    to[SAMPLE_DENSITY * pools->stride] = probability * sample->density;
-    to[SAMPLE_WEIGHTED_RED * pools->stride] = finite_product(sample->weighted[0], scale);
-    to[SAMPLE_WEIGHTED_GREEN * pools->stride] = finite_product(sample->weighted[1], scale);
-    to[SAMPLE_WEIGHTED_BLUE * pools->stride] = finite_product(sample->weighted[2], scale);
-}
-
-/* The tree of all tiles as a bin weighs them. */
-typedef struct bin_tree {
-    uint8_t runs[TILE_RUNS + 1], groups[TILE_GROUPS];
-    uint32_t sums[TILE_GROUPS + 1];
-    alignas(64) uint32_t weights[TILES_MOST];
-} bin_tree;
-
-static void make_bin_tree(const normal_bins *bins, uint32_t bin, bin_tree *tree)
-{
-    const uint32_t *sums = normal_bins_sums(bins, bin), count = bins->tiles->count;
-    const uint32_t group_count = bins->tiles->groups.count;
-#pragma omp simd
-    for (uint32_t i = 0; i < count; i++)
-        tree->weights[i] = sums[i + 1] - sums[i];
-    for (uint32_t i = count; i < group_count * TILE_GROUP; i++)
-        tree->weights[i] = 0;
-    for (uint32_t i = 0; i < group_count; i++) {
-        tree->groups[i] = (uint8_t)i;
-        tree->sums[i] = sums[i * TILE_GROUP];
-    }
-    tree->sums[group_count] = sums[count];
-    for (uint32_t run = 0; run <= TILE_RUNS; run++)
-        tree->runs[run] = (uint8_t)(run * TILE_RUN < group_count ? run * TILE_RUN : group_count);
-}
-
-/* Adds what a sample stands for, see control.h, to its chunk's sum. */
-static void add_known(const helio_pools *pools, const normal_bin *bin, uint32_t index, uint32_t position,
-                      control_matrix *chunks)
-{
-    const tiles *t = pools->bins->tiles;
-    const vec3 centre = {t->x[position], t->y[position], t->z[position]};
-    const control_line line = control_line_of(bin, dot(bin->centre, centre));
-    const float *sample = pools_array(pools, 0, SAMPLE_X) + index;
-    control_matrix *sum = &chunks[index % pools->pool_length / CONTROL_CHUNK];
-    const vec3 direction = {sample[SAMPLE_X * pools->stride], sample[SAMPLE_Y * pools->stride],
-                            sample[SAMPLE_Z * pools->stride]};
-    const float factors[4] = {line.slope * direction.x, line.slope * direction.y, line.slope * direction.z,
-                              line.offset * dot(centre, direction)};
-    const float light[3] = {sample[SAMPLE_WEIGHTED_RED * pools->stride], sample[SAMPLE_WEIGHTED_GREEN * pools->stride],
-                            sample[SAMPLE_WEIGHTED_BLUE * pools->stride]};
-    for (int row = 0; row < 4; row++)
-        for (int c = 0; c < 3; c++)
-            sum->rows[row][c] += factors[row] * light[c];
-}
-
-/* Samples of a run lie in the order of their numbers with the bits reversed, and some of them flipped at random: so
- * each aligned window of a power of two has one of each of that many parts of the run, and any place holds each of the
- * samples with the same probability. */
-static void store_run(helio_pools *pools, uint32_t bin, uint32_t first, uint32_t count, uint32_t flipped,
-                      const tile_draw *draws)
-{
-    const normal_bins *bins = pools->bins;
-    control_matrix *chunks = control_chunks(pools->control, bin);
-    memset(chunks + first / CONTROL_CHUNK, 0, count / CONTROL_CHUNK * sizeof *chunks);
-    for (uint32_t i = 0; i < count; i++) {
-        const tile_draw *draw = &draws[(uint32_t)(((uint64_t)(reverse_bits(i) ^ flipped) * count) >> 32)];
-        store_listed(pools, bin, first + i, &bins->listed[draw->element], (float)draw->weight * bins->shares[bin]);
-        add_known(pools, &bins->bins[bin], bin * pools->pool_length + first + i, draw->position, chunks);
-    }
-}
-
-void KERNEL(draw_bin)(helio_pools *pools, uint32_t bin, uint32_t first, uint32_t count, uint32_t seed)
-{
-    const normal_bins *bins = pools->bins;
-    const uint32_t run = pools_run_of_bin(pools);
-    bin_tree own;
-    tile_draw draws[POOL_RUN_MOST] = {{0}}; /* so that analyzers need not follow the tree */
-    make_bin_tree(bins, bin, &own);
-    const tile_tree tree = {own.runs, own.groups, own.sums, own.weights, bins->list_starts};
-    for (uint32_t done = 0; done < count; done += run) {
-        const uint32_t seed_of_run = hash_combine(seed, (first + done) / run);
-        tile_tree_draw(&tree, false, run, 0, run, seed_of_run, draws);
-        for (uint32_t i = 0; i < run; i++)
-            __builtin_prefetch(&bins->listed[draws[i].element]);
-        store_run(pools, bin, first + done, run, tile_tree_random(seed_of_run, TILE_TREE_ORDER), draws);
-    }
+    draw_pieces(bins, tables, pieces, count);
 }
 
 /* ---- taking samples ---- */

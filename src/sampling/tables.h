@@ -110,8 +110,8 @@ uint32_t tables_invert(const uint32_t *sums, uint32_t count, uint32_t x, uint32_
 static inline face_place tables_place(uint32_t size, uint32_t face, uint32_t row, uint32_t row_fraction,
                                       uint32_t column, uint32_t column_fraction)
 {
-    float u = ((float)(2 * column) + 2.0f * unit_float(column_fraction)) / (float)size - 1.0f;
-    float v = ((float)(2 * row) + 2.0f * unit_float(row_fraction)) / (float)size - 1.0f;
+    float u = ((float)(int32_t)(2 * column) + 2.0f * unit_float(column_fraction)) / (float)(int32_t)size - 1.0f;
+    float v = ((float)(int32_t)(2 * row) + 2.0f * unit_float(row_fraction)) / (float)(int32_t)size - 1.0f;
     return (face_place){face, row, column, u, v};
 }
 

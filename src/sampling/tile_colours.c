@@ -8,102 +8,110 @@
 
 _Static_assert((int)COLOUR_TILES == (int)TILES_MOST, "a colour for each tile");
 
-enum { LEAST_CELLS = 32 }; /* along an edge of a face, see add_texels() */
+enum {
+    LEAST_CELLS = 32, /* along an edge of a face, see find_moments() */
+    BAND_COLUMNS =
+        256 /* texels of a row of a band, unless a tile has more: sums and moments stay in the nearest cache */
+};
 
 typedef struct colour_work {
     tiles *tiles;
     const helio_environment *environment;
     const kernel_set *kernels;
+    uint32_t bands, tiles_of_band; /* in a row of tiles; side by side */
 } colour_work;
 
-/* Texels of cubes with few of them are cut into split x split cells. */
-typedef struct tile_cells {
-    uint32_t split, first_column, count; /* columns of cells */
-    float width;
-    float u[COLOUR_COLUMNS]; /* [count] */
-} tile_cells;
+/* Tiles side by side in a row of tiles, of every face: what directions are integrated to is the same on all of them.
+ * Texels of cubes with few of them are cut into split x split cells. */
+typedef struct tile_band {
+    uint32_t row, first, end;                     /* of tiles: the row, the columns */
+    uint32_t first_column, columns, split, count; /* of texels; and columns of cells */
+    float width;                                  /* of a cell */
+    float u[COLOUR_COLUMNS];                      /* [count] */
+    column_colours sums[CUBE_FACES];
+} tile_band;
 
-static void lay_columns(const tiles *t, uint32_t column, tile_cells *cells)
+static void lay_band(const colour_work *work, uint32_t index, tile_band *band)
 {
-    cells->split = (LEAST_CELLS + t->size - 1) / t->size;
-    cells->first_column = t->starts[column];
-    cells->count = (t->starts[column + 1] - t->starts[column]) * cells->split;
-    cells->width = 2.0f / (float)(t->size * cells->split);
-    for (uint32_t i = 0; i < cells->count; i++)
-        cells->u[i] = ((float)(cells->first_column * cells->split + i) + 0.5f) * cells->width - 1.0f;
+    const tiles *t = work->tiles;
+    band->row = index / work->bands;
+    band->first = index % work->bands * work->tiles_of_band;
+    band->end = band->first + work->tiles_of_band < t->per_edge ? band->first + work->tiles_of_band : t->per_edge;
+    band->first_column = t->starts[band->first];
+    band->columns = t->starts[band->end] - band->first_column;
+    band->split = (LEAST_CELLS + t->size - 1) / t->size;
+    band->count = band->columns * band->split;
+    band->width = 2.0f / (float)(t->size * band->split);
+    for (uint32_t i = 0; i < band->count; i++)
+        band->u[i] = ((float)(band->first_column * band->split + i) + 0.5f) * band->width - 1.0f;
+    for (uint32_t face = 0; face < CUBE_FACES; face++)
+        for (uint32_t i = 0; i <= 3 * band->count; i++)
+            band->sums[face].along_axis[i] = band->sums[face].along_right[i] = band->sums[face].along_down[i] = 0.0f;
 }
 
-static void clear_columns(uint32_t count, column_colours *sums)
+/* The texels of a row of a face, each as often as it is cut. */
+static void cut_texels(const tile_band *band, const float *rgb, float *copies)
 {
-    for (int c = 0; c < 3; c++)
-        for (uint32_t i = 0; i < count; i++)
-            sums->along_axis[c][i] = sums->along_right[c][i] = sums->along_down[c][i] = 0.0f;
+    for (uint32_t i = 0; i < band->count; i++)
+        memcpy(copies + 3 * (size_t)i, rgb + 3 * (size_t)(i / band->split), 3 * sizeof(float));
 }
 
-/* As one row; see add_texels() for why. */
-static void add_cut_row(const colour_work *work, const tile_cells *cells, texel_rows texels, uint32_t row,
-                        column_colours *sums)
+/* rows: of cells, of one row of texels where these are cut. */
+static void add_rows(const colour_work *work, uint32_t row, uint32_t rows, tile_band *band)
 {
-    float copies[3 * LEAST_CELLS * 2];
-    for (uint32_t i = 0; i < cells->count; i++)
-        memcpy(copies + 3 * (size_t)i, texels.rgb + 3 * (size_t)(i / cells->split), 3 * sizeof(float));
-    texels.rgb = copies;
-    texels.rows = 1;
-    for (uint32_t i = 0; i < cells->split; i++) {
-        texels.v = ((float)(row * cells->split + i) + 0.5f) * cells->width - 1.0f;
-        work->kernels->add_texels(&texels, sums);
+    const texel_rows texels = {.rows = rows,
+                               .count = band->count,
+                               .columns = band->u,
+                               .v = ((float)row + 0.5f) * band->width - 1.0f,
+                               .width = band->width};
+    texel_moments moments;
+    float copies[3 * COLOUR_COLUMNS];
+    work->kernels->find_moments(&texels, &moments);
+    for (uint32_t face = 0; face < CUBE_FACES; face++) {
+        const float *rgb = environment_texel(work->environment, face, row / band->split, band->first_column);
+        if (band->split > 1)
+            cut_texels(band, rgb, copies);
+        work->kernels->add_texels(&texels, band->split > 1 ? copies : rgb, (size_t)3 * work->environment->size,
+                                  &moments, &band->sums[face]);
     }
 }
 
-static void add_rows(const colour_work *work, const tile_cells *cells, uint32_t face, uint32_t first, uint32_t end,
-                     column_colours *sums)
+static vec3 moment_of(const colour_sums *sums, const cube_face *face, int c)
 {
-    texel_rows texels = {.stride = (size_t)3 * work->environment->size,
-                         .count = cells->count,
-                         .columns = cells->u,
-                         .width = cells->width};
-    for (uint32_t row = first; row < end; row += texels.rows) {
-        texels.rgb = environment_texel(work->environment, face, row, cells->first_column);
-        texels.rows = cells->split > 1 ? 1 : end - row < TEXEL_ROWS ? end - row : TEXEL_ROWS;
-        texels.v = ((float)row + 0.5f) * cells->width - 1.0f;
-        if (cells->split > 1)
-            add_cut_row(work, cells, texels, row, sums);
-        else
-            work->kernels->add_texels(&texels, sums);
-    }
+    const vec3 along_axis = scale(face->axis, (float)sums->along_axis[c]);
+    return add_scaled(add_scaled(along_axis, face->right, (float)sums->along_right[c]), face->down,
+                      (float)sums->along_down[c]);
 }
 
-static vec3 sum_columns(const tile_cells *cells, const column_colours *sums, uint32_t face, int c)
+static void colour_tile(const colour_work *work, const tile_band *band, uint32_t face, uint32_t column)
 {
-    const cube_face *f = &cube_faces[face];
-    double axis = 0, right = 0, down = 0;
-    for (uint32_t i = 0; i < cells->count; i++) {
-        axis += (double)sums->along_axis[c][i];
-        right += (double)(sums->along_right[c][i] * cells->u[i]);
-        down += (double)sums->along_down[c][i];
-    }
-    return add_scaled(add_scaled(scale(f->axis, (float)axis), f->right, (float)right), f->down, (float)down);
-}
-
-static void colour_tile(void *data, size_t index)
-{
-    const colour_work *work = data;
     tiles *t = work->tiles;
-    const uint32_t grid = (uint32_t)index, column = grid % t->per_edge, row = grid / t->per_edge % t->per_edge;
-    const uint32_t face = grid / (t->per_edge * t->per_edge), position = t->positions[grid];
+    const uint32_t position = t->positions[(face * t->per_edge + band->row) * t->per_edge + column];
+    const uint32_t first = (t->starts[column] - band->first_column) * band->split;
+    const uint32_t end = (t->starts[column + 1] - band->first_column) * band->split;
+    const colour_sums sums = work->kernels->sum_columns(&band->sums[face], band->u, first, end);
     float(*light)[3][TILES_MOST] = t->colours.light;
-    column_colours sums;
-    tile_cells cells;
-    lay_columns(t, column, &cells);
-    clear_columns(cells.count, &sums);
-    add_rows(work, &cells, face, t->starts[row], t->starts[row + 1], &sums);
     for (int c = 0; c < 3; c++) {
-        const vec3 moment = sum_columns(&cells, &sums, face, c);
+        const vec3 moment = moment_of(&sums, &cube_faces[face], c);
         light[0][c][position] = moment.x;
         light[1][c][position] = moment.y;
         light[2][c][position] = moment.z;
         light[3][c][position] = dot(moment, (vec3){t->x[position], t->y[position], t->z[position]});
     }
+}
+
+static void colour_band(void *data, size_t index)
+{
+    const colour_work *work = data;
+    const tiles *t = work->tiles;
+    tile_band band;
+    lay_band(work, (uint32_t)index, &band);
+    const uint32_t end = t->starts[band.row + 1] * band.split, most = band.split > 1 ? 1 : TEXEL_ROWS;
+    for (uint32_t row = t->starts[band.row] * band.split; row < end; row += most)
+        add_rows(work, row, end - row < most ? end - row : most, &band);
+    for (uint32_t face = 0; face < CUBE_FACES; face++)
+        for (uint32_t column = band.first; column < band.end; column++)
+            colour_tile(work, &band, face, column);
 }
 
 static void find_hues(tiles *t)
@@ -124,7 +132,10 @@ static void find_hues(tiles *t)
 
 void tile_colours_update(struct tiles *t, const helio_environment *environment)
 {
-    colour_work work = {t, environment, kernels_of(context_isa(t->context))};
-    context_parallel_for(t->context, t->count, colour_tile, &work);
+    colour_work work = {.tiles = t, .environment = environment, .kernels = kernels_of(context_isa(t->context))};
+    const uint32_t widest = (t->size + t->per_edge - 1) / t->per_edge;
+    work.tiles_of_band = widest < BAND_COLUMNS ? BAND_COLUMNS / widest : 1;
+    work.bands = (t->per_edge + work.tiles_of_band - 1) / work.tiles_of_band;
+    context_parallel_for(t->context, (size_t)t->per_edge * work.bands, colour_band, &work);
     find_hues(t);
 }

@@ -25,20 +25,33 @@ typedef struct tile_colours {
     float per_light;                            /* brightness of all tiles in relation to tiles.light of all */
 } tile_colours;
 
-/* Sums over the texels of a column in some rows, by colour: of radiance x the integral of direction along the face's
- * axis, along its right without the factor u, and along its down. */
-typedef struct column_colours {
-    float along_axis[3][COLOUR_COLUMNS], along_right[3][COLOUR_COLUMNS], along_down[3][COLOUR_COLUMNS];
-} column_colours;
-
-/* Texels of a tile, or the cells that they are cut into. */
+/* Texels of a row of tiles, or of a part of it, or the cells that they are cut into: places that all faces have. */
 typedef struct texel_rows {
-    const float *rgb; /* [rows][count][3], rows `stride` floats apart */
-    size_t stride;
     uint32_t rows, count; /* at most TEXEL_ROWS, COLOUR_COLUMNS */
     const float *columns; /* [count]: u of the columns' centres */
     float v, width;       /* of the first row's centre; of a row or column */
 } texel_rows;
+
+/* The integrals of direction over such texels, along the face's axis and along its right without the factor u, and the
+ * v of each row, by which the latter goes along its down. Each number stands for red, green and blue. */
+typedef struct texel_moments {
+    alignas(64) float along_axis[TEXEL_ROWS][3 * COLOUR_COLUMNS];
+    alignas(64) float along_right[TEXEL_ROWS][3 * COLOUR_COLUMNS];
+    float v[TEXEL_ROWS];
+} texel_moments;
+
+/* Sums of radiance x these over the texels of each column, by colour: [count][3], and what a register reads past them.
+ */
+typedef struct column_colours {
+    alignas(64) float along_axis[3 * COLOUR_COLUMNS + 1];
+    alignas(64) float along_right[3 * COLOUR_COLUMNS + 1];
+    alignas(64) float along_down[3 * COLOUR_COLUMNS + 1];
+} column_colours;
+
+/* The same over columns, with the factor u: red, green, blue and nothing, so that they are a register. */
+typedef struct colour_sums {
+    double along_axis[4], along_right[4], along_down[4];
+} colour_sums;
 
 /* Finds the colours of the frame; t->light must be there. */
 void tile_colours_update(struct tiles *t, const helio_environment *environment);

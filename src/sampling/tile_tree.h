@@ -10,7 +10,8 @@
  * - the same for all nodes, all weights / all samples: each node then gets its expected number rounded up or down, so
  *   that the error is less; but where the sum of all changes all steps do.
  *
- * See docs/method.md. */
+ * Points walk down the tree one node after the other; bins, which weigh all tiles, share all samples of a level out
+ * together, see tile_levels.h. See docs/method.md. */
 #ifndef HELIOSTAT_SRC_TILE_TREE_H
 #define HELIOSTAT_SRC_TILE_TREE_H
 

@@ -156,29 +156,36 @@ static float find_spread(const tiles *t, const uint32_t *sums, uint32_t rows)
     return t->radius * (float)part;
 }
 
-static void sum_tile(tiles *t, const helio_tables *tables, uint32_t position)
+/* What the rows of a row of tiles hold in each tile. */
+typedef row_sum tile_segments[TILES_PER_EDGE][CUBE_MAX_SIZE / TILES_PER_EDGE];
+
+/* Row by row, as they lie in memory. */
+static void find_segments(const tiles *t, const helio_tables *tables, size_t first, uint32_t rows,
+                          tile_segments segments)
 {
-    row_sum segments[CUBE_MAX_SIZE / TILES_PER_EDGE] = {{0}};
-    const uint32_t grid = t->grid[position], column = grid % t->per_edge, row = grid / t->per_edge % t->per_edge;
-    const size_t first = (size_t)(grid / (t->per_edge * t->per_edge)) * t->size + t->starts[row];
-    const uint32_t rows = t->starts[row + 1] - t->starts[row];
-    uint32_t *sums = t->sums + (size_t)position * t->stride;
     for (uint32_t i = 0; i < rows; i++) {
         const uint32_t *texels = tables->rows + (first + i) * (t->size + 1);
-        segments[i].sum = texels[t->starts[column + 1]] - texels[t->starts[column]];
-        segments[i].exponent = tables->row_sums[first + i].exponent;
+        const int32_t exponent = tables->row_sums[first + i].exponent;
+        for (uint32_t column = 0; column < t->per_edge; column++)
+            segments[column][i] = (row_sum){texels[t->starts[column + 1]] - texels[t->starts[column]], exponent};
     }
-    t->totals[position] = tables_sum_rows(segments, rows, sums);
-    t->spread[position] = find_spread(t, sums, rows);
-    find_segment_densities(t, segments, rows, sums, t->segment_densities + first * t->per_edge + column);
 }
 
-/* Tiles of one row of a face share the rows' memory, and so are summed one after the other. */
 static void sum_row_of_tiles(void *data, size_t index)
 {
     const summing *work = data;
-    for (uint32_t column = 0; column < work->tiles->per_edge; column++)
-        sum_tile(work->tiles, work->tables, work->tiles->positions[index * work->tiles->per_edge + column]);
+    tiles *t = work->tiles;
+    const size_t face = index / t->per_edge, row = index % t->per_edge, first = face * t->size + t->starts[row];
+    const uint32_t rows = t->starts[row + 1] - t->starts[row];
+    tile_segments segments;
+    find_segments(t, work->tables, first, rows, segments);
+    for (uint32_t column = 0; column < t->per_edge; column++) {
+        const uint32_t position = t->positions[index * t->per_edge + column];
+        uint32_t *sums = t->sums + (size_t)position * t->stride;
+        t->totals[position] = tables_sum_rows(segments[column], rows, sums);
+        t->spread[position] = find_spread(t, sums, rows);
+        find_segment_densities(t, segments[column], rows, sums, t->segment_densities + first * t->per_edge + column);
+    }
 }
 
 static double value_of(row_sum sum)

@@ -5,7 +5,7 @@
 #include "core/error.h"
 #include "vulkan/light.h"
 
-enum { THREADS = 64, THREADS_OF_TILE = 32 };
+enum { THREADS = 64, THREADS_OF_TILE = 32, BINS_OF_SOFTWARE = 4 };
 _Static_assert(sizeof(control_matrix) == LAYOUT_CONTROL_ROWS * 4 * sizeof(float) &&
                    (int)LAYOUT_CONTROL_CHUNK == (int)CONTROL_CHUNK,
                "as in control.h");
@@ -88,6 +88,12 @@ static void tell(vulkan_light *light)
     state->tile_edge = bins->tiles->edge;
 }
 
+/* Of a work group, see known.comp. */
+static uint32_t bins_at_once(const vulkan_light *light)
+{
+    return device_is_software(light->device) ? BINS_OF_SOFTWARE : 1;
+}
+
 static helio_status create_passes(vulkan_light *light)
 {
     const uint32_t threads = light_threads(light);
@@ -105,7 +111,7 @@ static helio_status create_passes(vulkan_light *light)
         {PASS_DRAW_LISTS, {"draw_lists", 1, {THREADS}}},
         {PASS_DRAW_BINS, {"draw_bins", 1, {THREADS}}},
         {PASS_TILE_CONTROL, {"tile_control", 1, {threads}}},
-        {PASS_KNOWN, {"known", 1, {threads}}},
+        {PASS_KNOWN, {"known", 2, {threads, bins_at_once(light)}}},
         {PASS_CONTROL_SUMS, {"control_sums", 1, {threads < THREADS ? threads : THREADS}}},
     };
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
@@ -178,6 +184,7 @@ static uint64_t groups(uint64_t threads)
 static void record_weights(vulkan_light *light, vulkan_commands *commands)
 {
     const struct layout_state *state = &light->state;
+    const uint32_t at_once = bins_at_once(light);
     const struct layout_push push = light_push(light, 0, 0);
     const struct layout_push greatest = light_push(light, 0, normal_bins_step(light->shape->bins));
     struct layout_push lists = light_push(light, 0, LIST_FACTOR * light->shape->bins->pool_length);
@@ -192,7 +199,7 @@ static void record_weights(vulkan_light *light, vulkan_commands *commands)
     commands_barrier(commands);
     commands_dispatch(commands, light->passes[PASS_TILE_LIGHT], &push, 1);
     commands_barrier(commands);
-    commands_dispatch(commands, light->passes[PASS_KNOWN], &push, state->bin_count);
+    commands_dispatch(commands, light->passes[PASS_KNOWN], &push, (state->bin_count + at_once - 1) / at_once);
     commands_dispatch(commands, light->passes[PASS_BINS], &push, state->bin_count);
     commands_barrier(commands);
     commands_dispatch(commands, light->passes[PASS_GREATEST], &greatest, groups(state->tile_count));

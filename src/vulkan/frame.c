@@ -251,7 +251,7 @@ static helio_status choose_way(struct vulkan_renderer *v, frame_slot *slot, cons
 /* The lists of points and misses: found by the device, or by the CPU and on their way. */
 static void record_lists(struct vulkan_renderer *v, const helio_renderer_desc *desc, vulkan_commands *commands)
 {
-    const struct layout_push push = light_push(&v->light, v->step.address, BACKGROUND_THREADS);
+    const struct layout_push push = light_push(&v->light, v->step.address, MISSES_OF_GROUP);
     commands_label(commands, "camera rays");
     if (v->traces)
         record_primary(v, desc, commands, v->way);

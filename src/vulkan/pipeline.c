@@ -6,6 +6,8 @@
 
 #include <string.h>
 
+enum { IS_SOFTWARE = 31 }; /* a constant of all shaders, see common.glsl */
+
 helio_status pipeline_load_shader(helio_device *device, const char *name, VkShaderModule *module)
 {
     const shader_code *code = NULL;
@@ -19,14 +21,27 @@ helio_status pipeline_load_shader(helio_device *device, const char *name, VkShad
     return vulkan_check(device->vk.CreateShaderModule(device->device, &create, NULL, module), "loading a shader");
 }
 
+/* The constants of a shader, and where they lie. */
+typedef struct specialisation {
+    uint32_t count, values[PIPELINE_CONSTANTS + 1];
+    VkSpecializationMapEntry entries[PIPELINE_CONSTANTS + 1];
+} specialisation;
+
+static void add_constant(specialisation *all, uint32_t id, uint32_t value)
+{
+    const uint32_t place = all->count * (uint32_t)sizeof value;
+    all->values[all->count] = value;
+    all->entries[all->count++] = (VkSpecializationMapEntry){id, place, sizeof value};
+}
+
 helio_status pipeline_create(helio_device *device, const pipeline_desc *desc, VkPipeline *out)
 {
-    VkSpecializationMapEntry entries[PIPELINE_CONSTANTS];
+    specialisation all = {0};
     *out = VK_NULL_HANDLE;
     for (uint32_t i = 0; i < desc->constant_count; i++)
-        entries[i] = (VkSpecializationMapEntry){i, i * (uint32_t)sizeof(uint32_t), sizeof(uint32_t)};
-    const VkSpecializationInfo special = {desc->constant_count, entries, desc->constant_count * sizeof(uint32_t),
-                                          desc->constants};
+        add_constant(&all, i, desc->constants[i]);
+    add_constant(&all, IS_SOFTWARE, device_is_software(device));
+    const VkSpecializationInfo special = {all.count, all.entries, all.count * sizeof *all.values, all.values};
     VkShaderModule module;
     HELIO_TRY(pipeline_load_shader(device, desc->shader, &module));
     const VkComputePipelineCreateInfo create = {.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,

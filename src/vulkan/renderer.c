@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PRIMARY_THREADS = PRIMARY_EDGE * PRIMARY_EDGE, TILE_THREADS = 32, TILE_THREADS_OF_SOFTWARE = 8 };
+enum { PRIMARY_THREADS = PRIMARY_EDGE * PRIMARY_EDGE, TILE_THREADS = 32, THREADS_OF_SOFTWARE = 8 };
 
 /* ---- creation ----------------------------------------------------------------------------- */
 
@@ -26,18 +26,19 @@ static bool read_shape(const char *text, shade_shape *shape)
         *numbers[i] = (uint32_t)number;
         text = end + 1;
     }
-    return shape->points <= shape->threads && shape->threads % shape->lanes == 0;
+    return (shape->points <= shape->threads || shape->lanes == 1) && shape->threads % shape->lanes == 0;
 }
 
-/* Software takes a point with each thread, as it has no use for neighbours. HELIOSTAT_VULKAN_SHADE=THREADS,POINTS,LANES
- * is for trying others on new hardware. */
+/* Software takes a point with each thread, as it has no use for neighbours, and some one after the other, as it takes
+ * long to learn what is the same for all. HELIOSTAT_VULKAN_SHADE=THREADS,POINTS,LANES is for trying others on new
+ * hardware. */
 static shade_shape choose_shape(const helio_device *device)
 {
     const char *variable = getenv("HELIOSTAT_VULKAN_SHADE");
     shade_shape tried = {0};
     if (variable != NULL && read_shape(variable, &tried))
         return tried;
-    return device_is_software(device) ? (shade_shape){64, 64, 1} : (shade_shape){64, 32, 8};
+    return device_is_software(device) ? (shade_shape){THREADS_OF_SOFTWARE, 64, 1} : (shade_shape){64, 32, 8};
 }
 
 static helio_status upload_tree(struct vulkan_renderer *v, const bvh *tree)
@@ -111,7 +112,7 @@ static uint32_t shadows_of(const helio_renderer *renderer)
 static helio_status create_shade_tiles(struct vulkan_renderer *v, const helio_renderer *renderer)
 {
     const struct layout_state *state = &v->light.state;
-    const uint32_t threads = device_is_software(v->device) ? TILE_THREADS_OF_SOFTWARE : TILE_THREADS;
+    const uint32_t threads = device_is_software(v->device) ? THREADS_OF_SOFTWARE : TILE_THREADS;
     const uint32_t kinds = points_kinds(renderer->desc.scene);
     const pipeline_desc desc = {"shade_tiles", 3, {threads, kinds, shadows_of(renderer)}};
     if (state->light != LAYOUT_LIGHT_BINS || state->surface != LAYOUT_SURFACE_BRDF || kinds == 1u << LAYOUT_DIFFUSE)
@@ -144,7 +145,8 @@ static helio_status create_passes(struct vulkan_renderer *v, const helio_rendere
                                  7,
                                  {v->shape.threads, v->shape.points, v->shape.lanes, points_kinds(renderer->desc.scene),
                                   state->light, state->surface, shadows_of(renderer)}};
-    const pipeline_desc background = {"background", 2, {BACKGROUND_THREADS, shadows_of(renderer)}};
+    const uint32_t threads = device_is_software(v->device) ? THREADS_OF_SOFTWARE : MISSES_OF_GROUP;
+    const pipeline_desc background = {"background", 3, {threads, shadows_of(renderer), MISSES_OF_GROUP / threads}};
     const pipeline_desc primary = {
         "primary", 3, {PRIMARY_THREADS, textures_are_seen(renderer->desc.scene), finds_layers(v, renderer)}};
     const pipeline_desc list_groups = {"list_groups", 1, {1}};

@@ -37,8 +37,9 @@ static void tell_addresses(vulkan_light *light, bool has_fluxes)
 static helio_status create_passes(vulkan_light *light)
 {
     const uint32_t threads = light_threads(light);
-    const uint32_t texels_at_once = device_is_software(light->device) ? TEXELS_OF_SOFTWARE : TEXELS;
-    const pipeline_desc rows = {"rows", 2, {threads, texels_at_once}}, marginals = {"marginals", 1, {threads}};
+    const bool is_software = device_is_software(light->device), reads_pairs = is_software && light->state.size % 2 == 0;
+    const pipeline_desc rows = {"rows", 3, {threads, is_software ? TEXELS_OF_SOFTWARE : TEXELS, reads_pairs}};
+    const pipeline_desc marginals = {"marginals", 1, {threads}};
     const pipeline_desc faces = {"faces", 1, {1}};
     HELIO_TRY(pipeline_create(light->device, &rows, &light->passes[PASS_ROWS]));
     HELIO_TRY(pipeline_create(light->device, &marginals, &light->passes[PASS_MARGINALS]));
