@@ -132,8 +132,8 @@ void find_runs(uint count)
 // the horizon. As look_at_groups() in point_tiles_kernel.c.
 float look_at_group(brdf b, tile_lobe lobe, uint i)
 {
-    const vec4 middle = STATE.groups.at[3u * i], light = STATE.groups.at[3u * i + 1u];
-    const vec2 width = STATE.groups.at[3u * i + 2u].xy; // variance and spread
+    const vec4 middle = vector_at(STATE.groups, 3u * i), light = vector_at(STATE.groups, 3u * i + 1u);
+    const vec2 width = vector_at(STATE.groups, 3u * i + 2u).xy; // variance and spread
     if (light.w == 0.0 || dot(b.normal, middle.xyz) <= -middle.w) {
         places[i] = NOWHERE;
         return 0.0;
@@ -186,7 +186,7 @@ vec2 weigh(brdf b, tile_lobe lobe, uint position)
 {
     if (position >= STATE.tile_count)
         return vec2(0.0);
-    const vec4 tile = STATE.tiles.at[position];
+    const vec4 tile = vector_at(STATE.tiles, position);
     const uint group = position / LAYOUT_TILE_GROUP;
     const float cosine = dot(b.normal, tile.xyz), soft = soft_cosine(cosine, STATE.tile_edge);
     const float light = tile.w > 0.0 ? tile.w * soft : 0.0;
@@ -244,10 +244,10 @@ void add_tile_sample(prepared_point p, uint index, uint total, inout vec4 sum, i
     const uint position = position_of(s.begin), weight = sums[s.end] - sums[s.begin];
     const uint start = STATE.list_starts.at[position], length = STATE.list_starts.at[position + 1u] - start;
     const uint element = 2u * (start + tree_element(s, seed, position, length));
-    const vec4 direction = STATE.listed.at[element];
+    const vec4 direction = vector_at(STATE.listed, element);
     const float probability = float(weight) / float(total);
-    const vec3 light = STATE.listed.at[element + 1u].rgb;
-    hues += light * (dot(STATE.tiles.at[position].xyz, direction.xyz) / STATE.tile_hues.at[position].w);
+    const vec3 light = vector_at(STATE.listed, element + 1u).rgb;
+    hues += light * (dot(vector_at(STATE.tiles, position).xyz, direction.xyz) / STATE.tile_hues.at[position].w);
     add_light_sample(p, direction.xyz, light / probability, probability * direction.w, p.expected[0], true, sum);
 }
 
@@ -269,7 +269,7 @@ vec3 control_hue(prepared_point p, uint count, uint total, float brightness, vec
     for (uint i = gl_LocalInvocationID.x; i < count; i += gl_WorkGroupSize.x) {
         const uint weight = sums[i + 1u] - sums[i];
         if (weight != 0u)
-            known += float(weight) * STATE.tile_hues.at[position_of(i)].rgb;
+            known += float(weight) * vector_at(STATE.tile_hues, position_of(i)).rgb;
     }
     const float share = p.expected[0] / float(STEP.samples);
     const vec3 colour = p.surface.colours[0] + p.surface.colours[1];

@@ -177,7 +177,7 @@ static double tiles_density_of(const world *w, const drawing_surface *s, const f
 {
     const tiles *t = w->pools->bins->tiles;
     return (double)point_tiles_probability(&s->tiles, tiles_position(t, at->face, at->row, at->column)) *
-           (double)tiles_density(t, w->tables, at);
+           (double)face_place_density(at->u, at->v, tables_texel_weight(w->tables, at), tiles_unit_density(t, at));
 }
 
 static double strategy_density(const world *w, const helio_counts *counts, const drawing_surface *s, vec3 map_direction)

@@ -11,41 +11,24 @@
 
 enum { MOST = 300, LIST = 16 };
 
-/* Weights of all tiles, and the tree of those groups that are not left out. */
+/* Weights of all tiles, and their tree. */
 typedef struct wood {
     uint32_t all[TILES_MOST], count; /* [count] */
     uint32_t list_starts[TILES_MOST + 1];
-    uint8_t runs[TILE_RUNS + 1], groups[TILE_GROUPS];
-    uint32_t sums[TILE_GROUPS + 1], weights[TILES_MOST], total;
+    uint32_t sums[TILE_GROUPS + 1], total;
     tile_tree tree;
 } wood;
 
-static uint32_t weight_of_group(const wood *w, uint32_t group)
+static void plant(wood *w)
 {
-    uint32_t sum = 0;
-    for (uint32_t i = 0; i < TILE_GROUP; i++)
-        sum += w->all[group * TILE_GROUP + i];
-    return sum;
-}
-
-static void plant(wood *w, bool leaves_out)
-{
-    uint32_t k = 0;
     w->total = 0;
     for (uint32_t group = 0; group < TILE_GROUPS; group++) {
-        const uint32_t sum = weight_of_group(w, group);
-        if (group * TILE_GROUP < w->count && (sum > 0 || !leaves_out)) {
-            w->groups[k] = (uint8_t)group;
-            w->sums[k] = w->total;
-            memcpy(w->weights + (size_t)k * TILE_GROUP, w->all + (size_t)group * TILE_GROUP,
-                   TILE_GROUP * sizeof *w->all);
-            k++;
-        }
-        w->total += sum;
-        w->runs[group / TILE_RUN + 1] = (uint8_t)k;
+        w->sums[group] = w->total;
+        for (uint32_t i = 0; i < TILE_GROUP; i++)
+            w->total += w->all[group * TILE_GROUP + i];
     }
-    w->sums[k] = w->total;
-    w->tree = (tile_tree){w->runs, w->groups, w->sums, w->weights, w->list_starts};
+    w->sums[TILE_GROUPS] = w->total;
+    w->tree = (tile_tree){w->sums, w->all, w->list_starts};
 }
 
 /* Most weights are small; some tiles, and whole groups, have none; one has a third of all. */
@@ -60,7 +43,7 @@ static void sow(wood *w, uint32_t count, uint64_t seed)
         w->list_starts[i + 1] = (i + 1) * LIST;
     }
     w->all[count / 2] = sum / 2 + 1;
-    plant(w, true);
+    plant(w);
 }
 
 static const uint32_t counts[] = {6, 54, 384, 1014, 1536}; /* of tiles: R = 1, 3, 8, 13 and from 16 on */
@@ -76,7 +59,7 @@ static void check_draws(const wood *w, const tile_draw *draws, uint32_t samples)
 {
     for (uint32_t i = 0; i < samples; i++) {
         assert_true(draws[i].position < w->count);
-        assert_true(draws[i].weight > 0 && draws[i].weight == w->all[draws[i].position]);
+        assert_true(w->all[draws[i].position] > 0);
         assert_int_equal(draws[i].element / LIST, draws[i].position);
         assert_true(i == 0 || draws[i - 1].position <= draws[i].position);
     }
@@ -104,7 +87,7 @@ static void a_single_unit_of_weight_is_found(void **state)
     wood w = {.count = 1536};
     tile_draw draws[MOST];
     w.all[777] = 1;
-    plant(&w, true);
+    plant(&w);
     for (int kind = 0; kind < KINDS; kind++) {
         tile_tree_draw(&w.tree, kind, MOST, 0, MOST, 3, draws);
         for (uint32_t i = 0; i < MOST; i++)
@@ -149,7 +132,6 @@ static void check_levels(const wood *w, uint32_t count, uint32_t seed)
     for (uint32_t i = 0; i < count; i++) {
         assert_int_equal(samples.nodes[i], draws[i].position);
         assert_int_equal(samples.places[i], draws[i].element);
-        assert_int_equal(levels.tiles[samples.nodes[i] + 1] - levels.tiles[samples.nodes[i]], draws[i].weight);
     }
 }
 
@@ -249,7 +231,7 @@ static void samples_stay_where_weights_do(void **state)
         sow(&before, 1536, seed);
         after = before;
         after.all[768] += after.all[768] / 20;
-        plant(&after, true);
+        plant(&after);
         tile_tree_draw(&before.tree, false, N, 0, N, seed, old);
         tile_tree_draw(&after.tree, false, N, 0, N, seed, new);
         for (uint32_t group = 0; group < TILE_GROUPS; group++) {
@@ -266,20 +248,6 @@ static void samples_stay_where_weights_do(void **state)
     }
     /* By less than a hundredth of all light; 0.87 is what is found. */
     assert_true(same > 0.8 * all);
-}
-
-static void groups_without_weight_may_be_left_out_or_not(void **state)
-{
-    (void)state;
-    static wood w;
-    tile_draw with[64], without[64];
-    for (uint32_t seed = 0; seed < 50; seed++) {
-        sow(&w, 1014, seed);
-        tile_tree_draw(&w.tree, seed % KINDS, 64, 0, 64, seed, without);
-        plant(&w, false);
-        tile_tree_draw(&w.tree, seed % KINDS, 64, 0, 64, seed, with);
-        assert_memory_equal(with, without, sizeof with);
-    }
 }
 
 /* Runs of either kind, and of steps that are the same for all groups and tiles as well. */
@@ -320,7 +288,6 @@ int main(void)
         cmocka_unit_test(levels_draw_what_the_tree_draws),
         cmocka_unit_test(tiles_get_samples_as_often_as_weights_say),
         cmocka_unit_test(samples_stay_where_weights_do),
-        cmocka_unit_test(groups_without_weight_may_be_left_out_or_not),
         cmocka_unit_test(nodes_get_what_is_expected_rounded_up_or_down),
     };
     return cmocka_run_group_tests_name("tile_tree", tests, NULL, NULL);

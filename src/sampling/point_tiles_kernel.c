@@ -230,13 +230,7 @@ void KERNEL(mix_hues)(const tiles *t, point_tiles *p)
 static void choose_tiles(const normal_bins *bins, const point_tiles *p, uint32_t samples, uint32_t first,
                          uint32_t count, uint32_t seed, tile_draw *draws)
 {
-    static const uint8_t runs[TILE_RUNS + 1] = {0, 16, 32, 48, 64, 80, 96};
-    static const uint8_t groups[TILE_GROUPS] = {
-        0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23,
-        24, 25, 26, 27, 28, 29, 30, 31, 32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43, 44, 45, 46, 47,
-        48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63, 64, 65, 66, 67, 68, 69, 70, 71,
-        72, 73, 74, 75, 76, 77, 78, 79, 80, 81, 82, 83, 84, 85, 86, 87, 88, 89, 90, 91, 92, 93, 94, 95};
-    const tile_tree tree = {runs, groups, p->sums, p->weights, bins->list_starts};
+    const tile_tree tree = {p->sums, p->weights, bins->list_starts};
     tile_tree_draw(&tree, true, samples, first, count, seed, draws);
     for (uint32_t i = 0; i < count; i++)
         __builtin_prefetch(&bins->listed[draws[i].element]);
@@ -246,7 +240,6 @@ void KERNEL(take_tiles)(const gathering *g, uint32_t first, uint32_t count, samp
 {
     const normal_bins *bins = g->pools->bins;
     const float expected = g->counts.expected[0];
-    const float share = g->tiles.share;
     tile_draw draws[BLOCK_SAMPLES] = {{0}}; /* so that analyzers need not follow the tree */
     choose_tiles(bins, &g->tiles, g->counts.realised[0], first, count, g->tile_seed, draws);
     for (uint32_t i = 0, k = block->count; i < count; i++, k++) {
@@ -260,7 +253,8 @@ void KERNEL(take_tiles)(const gathering *g, uint32_t first, uint32_t count, samp
         block->listed[k] = draws[i].element;
         for (int c = 0; c < 3; c++)
             block->hue[c] += sample->hue[c];
-        block->samples[SAMPLE_DENSITY][k] = (float)draws[i].weight * share * sample->density * expected;
+        block->samples[SAMPLE_DENSITY][k] =
+            point_tiles_probability(&g->tiles, draws[i].position) * sample->density * expected;
     }
     block->count += count;
 }

@@ -18,19 +18,17 @@
 #include "core/random.h"
 #include "sampling/tiles.h"
 
-/* What is shared out by. Groups may be left out that have no weight: nodes keep their numbers. */
+/* What is shared out by. */
 typedef struct tile_tree {
-    const uint8_t *runs;     /* [TILE_RUNS + 1]: where the groups of each run begin, and the end of all */
-    const uint8_t *groups;   /* [runs[TILE_RUNS]]: numbers of the groups, ascending */
-    const uint32_t *sums;    /* [runs[TILE_RUNS] + 1]: prefix sums over groups, below 2^31 */
-    const uint32_t *weights; /* [runs[TILE_RUNS]][TILE_GROUP] */
-    const uint32_t *list_starts;
+    const uint32_t *sums;        /* [TILE_GROUPS + 1]: prefix sums over groups, below 2^31 */
+    const uint32_t *weights;     /* [TILES_MOST] */
+    const uint32_t *list_starts; /* [TILES_MOST + 1] */
 } tile_tree;
 
 /* A sample: one of a tile's list. */
 typedef struct tile_draw {
-    uint32_t element, weight; /* in all lists; of the tile */
-    uint32_t position;        /* of the tile */
+    uint32_t element;  /* in all lists */
+    uint32_t position; /* of the tile */
 } tile_draw;
 
 /* The random number of a node: of a tile by its position, and of these. */
@@ -121,37 +119,37 @@ static inline tile_steps tile_walk_begin(const tile_walk *w, uint32_t sum, uint3
     return w->step != 0 ? tile_steps_given(sum, samples, w->step, random) : tile_steps_own(sum, samples, random);
 }
 
-static inline void tile_walk_put(tile_walk *w, uint32_t element, uint32_t weight, uint32_t position)
+static inline void tile_walk_put(tile_walk *w, uint32_t element, uint32_t position)
 {
     if (w->index - w->first < w->count)
-        w->draws[w->index - w->first] = (tile_draw){element, weight, position};
+        w->draws[w->index - w->first] = (tile_draw){element, position};
     w->index++;
 }
 
 /* Elements at equal steps through the list, from a random start; mostly there is one. */
-static inline void tile_walk_tile(tile_walk *w, uint32_t position, uint32_t weight, uint32_t samples)
+static inline void tile_walk_tile(tile_walk *w, uint32_t position, uint32_t samples)
 {
     const uint32_t start = w->tree->list_starts[position], length = w->tree->list_starts[position + 1] - start;
     const uint32_t random = tile_tree_random(w->seed, position);
     if (samples == 1) {
-        tile_walk_put(w, start + (uint32_t)(((uint64_t)length * random) >> 32), weight, position);
+        tile_walk_put(w, start + (uint32_t)(((uint64_t)length * random) >> 32), position);
         return;
     }
     for (tile_steps steps = tile_steps_own(length, samples, random); steps.left > 0; steps.left--) {
-        tile_walk_put(w, start + tile_steps_at(&steps), weight, position);
+        tile_walk_put(w, start + tile_steps_at(&steps), position);
         steps.place += steps.step;
     }
 }
 
-static inline void tile_walk_group(tile_walk *w, uint32_t k, uint32_t samples)
+static inline void tile_walk_group(tile_walk *w, uint32_t group, uint32_t samples)
 {
-    const uint32_t group = w->tree->groups[k], total = w->tree->sums[k + 1] - w->tree->sums[k];
-    const uint32_t *weights = w->tree->weights + (size_t)k * TILE_GROUP;
+    const uint32_t total = w->tree->sums[group + 1] - w->tree->sums[group], first = group * TILE_GROUP;
+    const uint32_t *weights = w->tree->weights + first;
     tile_steps steps = tile_walk_begin(w, total, samples, TILE_TREE_GROUPS + group);
     for (uint32_t i = 0, sum = weights[0]; steps.left > 0;) {
         while (sum <= tile_steps_at(&steps))
             sum += weights[++i];
-        tile_walk_tile(w, group * (uint32_t)TILE_GROUP + i, weights[i], tile_steps_take(&steps, sum));
+        tile_walk_tile(w, first + i, tile_steps_take(&steps, sum));
     }
 }
 
@@ -165,15 +163,14 @@ static inline bool tile_walk_skips(tile_walk *w, uint32_t samples)
 
 static inline void tile_walk_run(tile_walk *w, uint32_t run, uint32_t samples)
 {
-    const uint32_t begin = w->tree->runs[run], before = w->tree->sums[begin];
-    const uint32_t total = w->tree->sums[w->tree->runs[run + 1]] - before;
-    tile_steps steps = tile_walk_begin(w, total, samples, TILE_TREE_RUNS + run);
-    for (uint32_t k = begin; steps.left > 0;) {
-        while (w->tree->sums[k + 1] - before <= tile_steps_at(&steps))
+    const uint32_t *sums = w->tree->sums + (size_t)run * TILE_RUN;
+    tile_steps steps = tile_walk_begin(w, sums[TILE_RUN] - sums[0], samples, TILE_TREE_RUNS + run);
+    for (uint32_t k = 0; steps.left > 0;) {
+        while (sums[k + 1] - sums[0] <= tile_steps_at(&steps))
             k++;
-        const uint32_t some = tile_steps_take(&steps, w->tree->sums[k + 1] - before);
+        const uint32_t some = tile_steps_take(&steps, sums[k + 1] - sums[0]);
         if (!tile_walk_skips(w, some))
-            tile_walk_group(w, k, some);
+            tile_walk_group(w, run * TILE_RUN + k, some);
     }
 }
 
@@ -183,14 +180,14 @@ static inline __attribute__((always_inline)) void tile_tree_draw(const tile_tree
                                                                  uint32_t first, uint32_t count, uint32_t seed,
                                                                  tile_draw *draws)
 {
-    const uint32_t total = tree->sums[tree->runs[TILE_RUNS]];
+    const uint32_t total = tree->sums[TILE_GROUPS];
     tile_walk w = {.tree = tree, .seed = seed, .first = first, .count = count, .draws = draws};
     w.step = is_even ? ((uint64_t)total << 32) / samples : 0;
     tile_steps steps = tile_walk_begin(&w, total, samples, TILE_TREE_ROOT);
     for (uint32_t run = 0; steps.left > 0;) {
-        while (tree->sums[tree->runs[run + 1]] <= tile_steps_at(&steps))
+        while (tree->sums[(run + 1) * TILE_RUN] <= tile_steps_at(&steps))
             run++;
-        const uint32_t some = tile_steps_take(&steps, tree->sums[tree->runs[run + 1]]);
+        const uint32_t some = tile_steps_take(&steps, tree->sums[(run + 1) * TILE_RUN]);
         if (!tile_walk_skips(&w, some))
             tile_walk_run(&w, run, some);
     }

@@ -69,10 +69,4 @@ static inline float tiles_unit_density(const tiles *t, const face_place *at)
     return t->segment_densities[line * t->per_edge + t->of_line[at->column]];
 }
 
-/* Density, 1/sr, of a direction given its tile. */
-static inline float tiles_density(const tiles *t, const helio_tables *tables, const face_place *at)
-{
-    return face_place_density(at->u, at->v, tables_texel_weight(tables, at), tiles_unit_density(t, at));
-}
-
 #endif
