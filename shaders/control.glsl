@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// control.glsl - the control variate of matte points: as control.h. Needs common.glsl or state.glsl.
+// control.glsl - the control variate of matte points: as control.h. Needs common.glsl, or state.glsl and
+// vectors.glsl.
 
 // a and c for a bin (its centre and reach) and a tile whose centres' cosine is given.
 struct control_line {

@@ -29,6 +29,7 @@
 #define LAYOUT_TILES_PER_EDGE 16
 #define LAYOUT_TILE_GROUP 16 /* tiles that follow each other */
 #define LAYOUT_TILE_RUN 16   /* groups that follow each other */
+#define LAYOUT_REFINED_PARTS 256 /* POINT_REFINED_PARTS, see point_tiles.h */
 #define LAYOUT_TILES_MOST (LAYOUT_FACES * LAYOUT_TILES_PER_EDGE * LAYOUT_TILES_PER_EDGE)
 
 /* layout_state.light and .surface: strategy_light and strategy_surface. */

@@ -7,7 +7,7 @@
 #include "cube.glsl"
 #include "tables.glsl"
 #include "tiles.glsl"
-#include "rectangle.glsl"
+#include "walk.glsl"
 
 shared double parts[3u * gl_WorkGroupSize.x];
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // rays.glsl - does light reach a point? A tree of boxes over the triangles of the mesh (src/vulkan/bvh.c), the ground, and
-// the rules of scene_find_visible() in src/scene/scene.c. Needs common.glsl and the constant VISIBILITY.
+// the rules of scene_find_visible() in src/scene/scene.c. Needs common.glsl and the constants
+// VISIBILITY and IS_SOFTWARE.
 
 const uint LEAF = 0x80000000u, STACK = 64u;
 
@@ -106,7 +107,8 @@ bool is_occluded(vec3 origin, vec3 direction)
                 stack[height++] = right_child;
             else if (!left && !right && height == 0u)
                 return false;
-            node = left ? left_child : right ? right_child : stack[--height];
+            height -= left || right ? 0u : 1u;
+            node = left ? left_child : right ? right_child : stack[height];
         } while (goes_on_down(node));
     }
 }

@@ -52,7 +52,7 @@ const bool TREE_IS_EVEN = true;
 #include "tile_tree.glsl"
 
 // A group of which the specular lobe has more than this part of all light has its tiles weighed by themselves.
-const float REFINED_PART = 1.0 / 256.0;
+const float REFINED_PART = 1.0 / float(LAYOUT_REFINED_PARTS);
 
 // See tile_lobe in point_tiles.h.
 struct tile_lobe {
@@ -89,7 +89,7 @@ float specular_at(brdf b, tile_lobe lobe, vec3 direction, float width, float cos
         const float exponent = 1.0 / width;
         return lobe.specular * (exponent + 2.0) * exp2_fast(1.44269504 * exponent * (along - 1.0));
     }
-    const float height = b.view_cosine + cosine, twice = 2.0 + 2.0 * along;
+    const float height = b.view_cosine + cosine, twice = max(2.0 + 2.0 * along, 1e-6);
     const float safe = max(twice - (1.0 - min(width, 0.999)) * (height * height), 1e-6);
     const float masking = soft * (2.0 - lobe.alpha) + lobe.alpha;
     return lobe.specular * width * (twice * twice) / (safe * safe * masking);

@@ -7,14 +7,14 @@
 #include "cube.glsl"
 #include "tables.glsl"
 #include "tiles.glsl"
-#include "rectangle.glsl"
+#include "walk.glsl"
 
 const uint LEAST_CELLS = 32u, WAYS = 3u;
 
 // Along the face's axis, right and down.
 shared vec3 parts[WAYS * gl_WorkGroupSize.x];
 
-// Of a texel that is cut into so many cells along its edges. See add_texel() in control_kernel.c.
+// Of a texel that is cut into so many cells along its edges. See find_row_moments() in control_kernel.c.
 vec3 integrate(float u, float v, float width, uint split)
 {
     const float area = width * width;

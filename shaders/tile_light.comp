@@ -26,16 +26,17 @@ layout_row_sum total_at(uint position)
     return layout_row_sum(STATE.tile_totals.at[position].sum, STATE.tile_totals.at[position].exponent);
 }
 
-void sum_group_of_tiles(uint group)
+// What other threads have written is not read, but found again.
+void sum_group_of_tiles(uint group, int exponent)
 {
     const uint end = min((group + 1u) * LAYOUT_TILE_GROUP, STATE.tile_count);
     vec3 sum = vec3(0.0);
     float light = 0.0, spread = 0.0;
     for (uint i = group * LAYOUT_TILE_GROUP; i < end; i++) {
-        const vec4 tile = STATE.tiles.at[i];
-        light += tile.w;
-        spread += tile.w > 0.0 ? tile.w * STATE.tile_spreads.at[i] : 0.0;
-        sum += tile.w * tile.xyz;
+        const float own = light_of(total_at(i), exponent);
+        light += own;
+        spread += own > 0.0 ? own * STATE.tile_spreads.at[i] : 0.0;
+        sum += own * STATE.tiles.at[i].xyz;
     }
     const float size = length(sum), part = light > 0.0 ? min(size / light, 1.0) : 1.0;
     const vec3 mean = part > 1e-3 && size > 0.0 ? sum / size : STATE.groups.at[3u * group].xyz;
@@ -59,11 +60,10 @@ void main()
         sums += light > 0.0 ? vec2(STATE.tile_hues.at[i].w, light) : vec2(0.0);
     }
     parts[gl_LocalInvocationID.x] = sums;
-    memoryBarrierBuffer();
     barrier();
     const uint groups = (STATE.tile_count + LAYOUT_TILE_GROUP - 1u) / LAYOUT_TILE_GROUP;
     for (uint group = gl_LocalInvocationID.x; group < groups; group += gl_WorkGroupSize.x)
-        sum_group_of_tiles(group);
+        sum_group_of_tiles(group, exponent);
     if (gl_LocalInvocationID.x != 0u)
         return;
     for (uint i = 1u; i < gl_WorkGroupSize.x; i++)

@@ -831,6 +831,47 @@ static void answer_all(void *user, const helio_shading_point *point, uint32_t co
     seen->rays += count;
 }
 
+/* That of BRDF samples, which never look at the tables, by the tables. */
+static void check_densities(const world *w, const helio_shading_point *point)
+{
+    helio_sample samples[64];
+    helio_counts counts;
+    uint32_t count;
+    static drawing_surface surface;
+    const vec3 normal = vec3_from(point->normal);
+    assert_ok(helio_gather(w->pools, point, NULL, samples, &count));
+    assert_ok(helio_count(w->pools, point, NULL, &counts));
+    prepare(w, point, normal, brdf_lift_view(normal, vec3_from(point->view)), &surface);
+    for (uint32_t k = 0; k < count; k++)
+        if (samples[k].technique == 6) {
+            const double expected = strategy_density(w, &counts, &surface, vec3_from(samples[k].direction));
+            assert_true(fabs((double)samples[k].density - expected) <= 2e-5 * expected);
+        }
+}
+
+static void densities_of_gathered_samples_are_those_of_the_tables(void **state)
+{
+    (void)state;
+    static test_map maps[MAPS];
+    helio_context *context = make_context(1, NULL);
+    make_maps(maps);
+    for (int s = 0; s < STRATEGIES; s++)
+        for (helio_weighting weighting = 0; weighting <= HELIO_WEIGHTING_COMPENSATED; weighting++)
+            for (int m = 0; m < 4; m++) {
+                const helio_strategy strategy = strategies[s];
+                if (weighting == HELIO_WEIGHTING_COMPENSATED && strategy != HELIO_STRATEGY_LIGHT_BRDF &&
+                    strategy != HELIO_STRATEGY_FACE_BRDF)
+                    continue;
+                world w = make_world(context, &maps[m], weighting, strategy, 512);
+                helio_shading_point points[POINTS];
+                make_points(points);
+                for (int i = 0; i < POINTS; i++)
+                    check_densities(&w, &points[i]);
+                destroy_world(&w);
+            }
+    helio_context_destroy(context);
+}
+
 static void gathered_samples_sum_to_the_estimate(void **state)
 {
     (void)state;
@@ -995,6 +1036,7 @@ int main(void)
         cmocka_unit_test(a_sun_behind_the_point_gets_no_samples),
         cmocka_unit_test(beta_makes_counts_continuous),
         cmocka_unit_test(sample_weights_are_bounded_under_a_sun),
+        cmocka_unit_test(densities_of_gathered_samples_are_those_of_the_tables),
         cmocka_unit_test(gathered_samples_sum_to_the_estimate),
         cmocka_unit_test(black_maps_give_black_and_no_light_samples),
         cmocka_unit_test(hostile_maps_give_finite_light),

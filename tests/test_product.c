@@ -364,7 +364,7 @@ static void no_edge_of_a_bin_shows(void **state)
         for (uint32_t k = 0; k < SHAKES; k++) /* a net in the three numbers of ten bits */
             now[normal_bins_cell(8, normal_bins_shaken(w.pools->bins, normal,
                                                        (sobol(k, 0) >> 22) | (sobol(k, 1) >> 22) << 10 |
-                                                           (sobol(k, 2) >> 22) << 20))] += 1.0 / SHAKES;
+                                                           (k * 1024u / SHAKES) << 20))] += 1.0 / SHAKES;
         double apart = 0;
         for (uint32_t bin = 0; bin < w.pools->count; bin++)
             apart += fabs(now[bin] - before[bin]) / 2;
@@ -462,6 +462,61 @@ static vec3 some_direction(uint64_t *seed)
     return normalize(v);
 }
 
+/* ---- groups of tiles ---- */
+
+static void check_group(const tiles *t, uint32_t group, vec3 middle)
+{
+    const tile_groups *g = &t->groups;
+    double light = 0;
+    for (uint32_t i = group * TILE_GROUP; i < (group + 1) * TILE_GROUP && i < t->count; i++) {
+        const double apart = acos(fmin(1, (double)dot(middle, (vec3){t->x[i], t->y[i], t->z[i]})));
+        light += (double)t->light[i];
+        assert_true(apart + (double)t->radius >= PI / 2 || (double)g->edge[group] >= sin(apart + (double)t->radius));
+    }
+    assert_true(fabs((double)g->light[group] - light) <= 1e-5 * light);
+    assert_true(g->variance[group] >= 0 && g->variance[group] <= 1);
+    assert_true(g->spread[group] >= 0 && (double)g->spread[group] <= (double)t->radius * (1 + 1e-5));
+    assert_float_equal(length((vec3){g->light_x[group], g->light_y[group], g->light_z[group]}), 1, 1e-5);
+}
+
+/* Where all tiles are near enough, and the light of each is in one of them. */
+static void groups_hold_the_light_of_their_tiles(void **state)
+{
+    (void)state;
+    for (int s = 0; s < SIZES; s++) {
+        float *map = make_sky(sizes[s], 5);
+        world w = make_world(map, sizes[s], 2, 64, HELIO_WEIGHTING_SOLID_ANGLE);
+        const tiles *t = w.pools->bins->tiles;
+        const tile_groups *g = &t->groups;
+        assert_int_equal(g->count, (t->count + TILE_GROUP - 1) / TILE_GROUP);
+        for (uint32_t i = 0; i < g->count; i++)
+            check_group(t, i, (vec3){g->x[i], g->y[i], g->z[i]});
+        for (uint32_t i = g->count; i < TILE_GROUPS; i++)
+            assert_true(g->light[i] == 0);
+        destroy_world(&w);
+        free(map);
+    }
+}
+
+/* A group with one lit tile is where that is, and no wider. */
+static void the_light_of_one_tile_is_its_groups(void **state)
+{
+    (void)state;
+    enum { R = 32, FACE = 3, ROW = 20, COLUMN = 7 };
+    float *map = make_map(R);
+    map[((FACE * R + ROW) * R + COLUMN) * 3 + 1] = 7.0f;
+    world w = make_world(map, R, 2, 64, HELIO_WEIGHTING_SOLID_ANGLE);
+    const tiles *t = w.pools->bins->tiles;
+    const uint32_t position = tiles_position(t, FACE, ROW, COLUMN), group = position / TILE_GROUP;
+    const vec3 towards = {t->groups.light_x[group], t->groups.light_y[group], t->groups.light_z[group]};
+    assert_float_equal(dot(towards, (vec3){t->x[position], t->y[position], t->z[position]}), 1, 1e-5);
+    assert_true(t->groups.variance[group] < 1e-5f && t->groups.spread[group] == t->spread[position]);
+    for (uint32_t i = 0; i < t->groups.count; i++)
+        assert_true((t->groups.light[i] > 0) == (i == group));
+    destroy_world(&w);
+    free(map);
+}
+
 /* A surface seen from above, or just so. */
 static brdf some_surface(const helio_material *material, uint64_t *seed)
 {
@@ -494,6 +549,7 @@ static void points_weigh_every_tile_that_can_light_them(void **state)
             }
             assert_true(sum == p.total && sum < (uint64_t)1 << 31);
             assert_true(sum == 0 || fabs(probability - 1) < 1e-5);
+            assert_true(p.left >= 0 && p.left <= 1 && p.brightness >= 0 && isfinite(p.brightness));
             for (int k = 0; k < 400; k++) {
                 vec3 direction = some_direction(&seed);
                 cube_position at = cube_project(direction);
@@ -507,6 +563,8 @@ static void points_weigh_every_tile_that_can_light_them(void **state)
                 assert_ok(isa_choose(helio_isa_name(i), &set));
                 kernels_of(set)->weigh_point(t, &lobe, &other);
                 assert_int_equal(p.total, other.total);
+                assert_true(p.left == other.left && p.share == other.share && p.brightness == other.brightness);
+                assert_memory_equal(p.sums, other.sums, sizeof p.sums);
                 assert_memory_equal(p.weights, other.weights, sizeof p.weights);
             }
         }
@@ -601,6 +659,8 @@ int main(void)
         cmocka_unit_test(bins_are_cells_around_their_centres),
         cmocka_unit_test(black_maps_have_no_density_and_one_texel_has_it_all),
         cmocka_unit_test(bins_follow_the_frame),
+        cmocka_unit_test(groups_hold_the_light_of_their_tiles),
+        cmocka_unit_test(the_light_of_one_tile_is_its_groups),
         cmocka_unit_test(points_weigh_every_tile_that_can_light_them),
         cmocka_unit_test(auto_aims_only_where_that_pays),
     };

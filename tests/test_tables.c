@@ -336,23 +336,18 @@ static void densities_integrate_to_one_over_each_face(void **state)
     }
 }
 
-/* pdf(w | f) = I_ij K / (4 I_f) (1 + u^2 + v^2)^(3/2), with I_ij the luminance, or luminance x solid angle. */
 /* Who has the radiance of a texel at hand need not read the tables. */
 static void check_weights_of_texels(const fixture *f)
 {
     const helio_tables *t = f->tables;
-    texel_weight_kind kind = t->level > 0 ? WEIGHT_FLUX_ABOVE : WEIGHT_FLUX;
-    if (t->weighting == HELIO_WEIGHTING_PAPER)
-        kind = WEIGHT_LUMINANCE;
+    const texel_weight_kind kind = texel_weight_kind_of(t->weighting != HELIO_WEIGHTING_PAPER, t->level);
     for (uint32_t i = 0; i < CUBE_FACES * f->size * f->size; i++) {
         const face_place at = {i / f->size / f->size, i / f->size % f->size, i % f->size, 0, 0};
         const float solid_angle = f->environment->solid_angle[texel_mirrored(f->size, at.row, at.column)];
-        const float quarter_texels = 0.25f * (float)f->size * (float)f->size;
         const vec3 radiance = vec3_from(environment_texel(f->environment, at.face, at.row, at.column));
-        const float weight =
-            texel_weight(kind, radiance, kind == WEIGHT_LUMINANCE ? 1 : solid_angle * quarter_texels, t->level);
-        const int32_t exponent = t->row_sums[i / f->size].exponent;
-        assert_int_equal(fixed_point_integer(weight, fixed_point_power(exponent)), tables_texel_weight(t, &at));
+        assert_int_equal(texel_weight_integer(kind, radiance, solid_angle, texel_quarter(f->size), t->level,
+                                              t->row_sums[i / f->size].exponent),
+                         tables_texel_weight(t, &at));
     }
 }
 
@@ -371,6 +366,7 @@ static void weights_of_texels_follow_from_their_radiance(void **state)
             }
 }
 
+/* pdf(w | f) = I_ij K / (4 I_f) (1 + u^2 + v^2)^(3/2), with I_ij the luminance, or luminance x solid angle. */
 static void density_is_equation_1_of_the_paper(void **state)
 {
     (void)state;

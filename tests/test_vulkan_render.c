@@ -34,6 +34,8 @@ static bool plays_hardware, casts_shadows;
  * more closely. */
 static bool traces;
 
+static uint32_t cube_size = SIZE;
+
 /* Of the scenes. Alpha tells of shadows by itself where the ground is a shadow catcher, and is a part of 1. */
 static helio_ground ground = HELIO_GROUND_PLANE;
 
@@ -86,7 +88,7 @@ static stage make_stage(const char *material, const helio_renderer_desc *given)
     s.device = open_test_device(s.context);
     if (plays_hardware)
         s.device->info.kind = HELIO_DEVICE_DISCRETE;
-    assert_ok(helio_environment_create(s.context, &(helio_environment_desc){.cube_size = SIZE}, &s.environment));
+    assert_ok(helio_environment_create(s.context, &(helio_environment_desc){.cube_size = cube_size}, &s.environment));
     s.mesh = material != NULL ? make_unit_sphere(s.context) : make_textured_sphere(s.context);
     if (material != NULL)
         assert_ok(helio_material_parse(material, &parsed));
@@ -117,16 +119,17 @@ static void destroy_stage(stage *s)
     helio_context_destroy(s->context);
 }
 
-/* A sky with all sizes of detail, black in places, and a sun of four texels. */
+/* A sky with all sizes of detail, black in places, and a sun of four texels, or one. */
 static void light_stage_with(stage *s, uint64_t seed)
 {
     float *rgb = s->environment->cube;
-    for (size_t i = 0; i < (size_t)6 * SIZE * SIZE * 3; i++) {
-        const size_t row = i / (3 * SIZE), patch = row / 16 + i / 48;
+    const size_t size = cube_size, sun_row = size > 10 ? 9 : 0, sun_column = size / 2 > 30 ? 30 : size / 3;
+    for (size_t i = 0; i < 6 * size * size * 3; i++) {
+        const size_t row = i / (3 * size), patch = row / 16 + i / 48;
         rgb[i] = patch % 7 == 0 ? 0.0f : 0.1f + (float)(patch % 5) * 0.2f + 0.3f * (float)random_unit(&seed);
     }
-    for (size_t c = 0; c < 12; c++)
-        rgb[((4 * SIZE + 9 + c / 6) * SIZE + 30) * 3 + c % 6] = 2000.0f;
+    for (size_t c = 0; c < (size > 1 ? 12 : 3); c++)
+        rgb[((4 * size + sun_row + c / 6) * size + sun_column) * 3 + c % 6] = 2000.0f;
     s->environment->frame++;
 }
 
@@ -206,6 +209,20 @@ static void strategies_give_the_pictures_of_the_cpu(void **state)
         for (size_t m = 0; m < 3; m++)
             if (m == (i + 1 + i / 3) % 3 || is_thorough())
                 compare_strategy(strategies[i], MATERIALS[m]);
+}
+
+/* Tiles of a texel and less, groups with tiles that are missing or on opposite faces. */
+static void small_cubes_light_points_that_weigh_tiles(void **state)
+{
+    static const uint32_t sizes[] = {1, 3, 13};
+    static const char *const metal = "ggx:base=1,0.8,0.3,metallic=1,roughness=0.2";
+    (void)state;
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        cube_size = sizes[i];
+        print_message("%u texels along an edge: ", cube_size);
+        compare_strategy(HELIO_STRATEGY_PRODUCT_BRDF, i % 2 == 0 ? metal : MATERIALS[1]);
+    }
+    cube_size = SIZE;
 }
 
 static void threads_that_share_a_point_light_it_alike(void **state)
@@ -880,6 +897,7 @@ int main(int count, char **arguments)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(strategies_give_the_pictures_of_the_cpu),
+        cmocka_unit_test(small_cubes_light_points_that_weigh_tiles),
         cmocka_unit_test(threads_that_share_a_point_light_it_alike),
         cmocka_unit_test(shadows_fall_where_the_cpu_has_them),
         cmocka_unit_test(rays_of_the_device_see_the_same),

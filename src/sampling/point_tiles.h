@@ -27,6 +27,10 @@ typedef struct tile_lobe {
     float view_cosine;
 } tile_lobe;
 
+/* A group of tiles of which the specular lobe has more than one of so many parts of all light has its tiles weighed by
+ * themselves; others share the lobe at its middle. */
+enum { POINT_REFINED_PARTS = 256 };
+
 typedef struct point_tiles {
     uint32_t total;   /* of all weights; 0 if no light is above the horizon */
     float share;      /* 1 / total, or 0 */

@@ -7,9 +7,6 @@
 
 #include <string.h>
 
-/* A group of which the specular lobe has more than this part of all light has its tiles weighed by themselves. */
-static const float REFINED_PART = 1.0f / 256.0f;
-
 /* ---- lobes ---- */
 
 /* The cosine between normal and a tile, but falling to 0 where the tile's last corner sinks below the horizon. */
@@ -33,7 +30,8 @@ static inline __attribute__((always_inline)) float specular_at(helio_material_ki
     /* D by (n.h)^2 = (n.v + n.l)^2 / (2 + 2 v.l), without the square root of h; times Smith's masking of the light,
      * nearly cosine / (cosine (2 - alpha) + alpha). */
     const float narrowness = 1.0f - (width < 0.999f ? width : 0.999f);
-    const float sum = lobe->view_cosine + cosine, twice = 2.0f + 2.0f * along;
+    const float sum = lobe->view_cosine + cosine, whole = 2.0f + 2.0f * along;
+    const float twice = whole > 1e-6f ? whole : 1e-6f; /* 0 opposite to the view */
     const float falling = twice - narrowness * (sum * sum);
     const float masking = soft * (2.0f - lobe->alpha) + lobe->alpha;
     const float safe = falling > 1e-6f ? falling : 1e-6f;
@@ -135,7 +133,7 @@ static inline __attribute__((always_inline)) void weigh_groups(helio_material_ki
 {
     const tile_lobe lobe = *given;
     look_at_groups(kind, t, &lobe, groups);
-    const float least = sum_in_order(groups->weight, TILE_GROUPS) * REFINED_PART;
+    const float least = sum_in_order(groups->weight, TILE_GROUPS) / (float)POINT_REFINED_PARTS;
     memset(groups->wholes, 0, sizeof groups->wholes);
     for (uint32_t group = 0; group < TILE_GROUPS; group++) {
         float *to = weights + (size_t)group * TILE_GROUP;

@@ -6,6 +6,8 @@
 #include "sampling/kernels.h"
 #include "sampling/texel_weight.h"
 
+#include <string.h>
+
 /* Directions of samples first ... first + count - 1 of the point's own set of scrambled points. */
 static inline __attribute__((always_inline)) void draw_directions(helio_material_kind kind, const gathering *g,
                                                                   uint32_t first, uint32_t count, float *restrict x,
@@ -57,30 +59,51 @@ static void find_texels(const gathering *g, uint32_t count, const float *restric
     }
 }
 
+static const float *texel_at(const gathering *g, const texel_list *texels, uint32_t i)
+{
+    return g->environment->cube + 3 * (size_t)texels->index[i];
+}
+
 /* Texels are in no near cache, and where a sample goes no processor can guess: all are sent for before the first is
- * waited for. Some end in the next line of the cache. */
-static inline __attribute__((always_inline)) void fetch_ahead(const gathering *g, uint32_t count,
+ * waited for. Some end in the next line of the cache. Inlined, as compilers leave out functions that only send. */
+static inline __attribute__((always_inline)) void fetch_ahead(const gathering *g, bool has_light, uint32_t count,
                                                               const texel_list *texels)
 {
     for (uint32_t i = 0; i < count; i++) {
-        const float *rgb = g->environment->cube + 3 * (size_t)texels->index[i];
+        const float *rgb = texel_at(g, texels, i);
         __builtin_prefetch(rgb);
         if (((uintptr_t)rgb & 63) > 52)
             __builtin_prefetch(rgb + 2);
-        __builtin_prefetch(g->environment->solid_angle + texels->mirrored[i]);
+        if (has_light)
+            __builtin_prefetch(g->environment->solid_angle + texels->mirrored[i]);
     }
 }
 
-/* The radiance in each direction, and what the density of the light techniques there is made of. */
-static void look_up(const gathering *g, uint32_t count, texel_list *texels, sample_block *block)
+/* The radiance in each direction. */
+static void read_texels(const gathering *g, uint32_t count, const texel_list *texels, sample_block *block)
 {
     float(*to)[BLOCK_STRIDE] = block->samples;
     for (uint32_t i = 0, k = block->count; i < count; i++, k++) {
-        const face_place at = {texels->face[i], texels->row[i], texels->column[i], texels->u[i], texels->v[i]};
-        const float *rgb = g->environment->cube + 3 * (size_t)texels->index[i];
+        const float *rgb = texel_at(g, texels, i);
         to[SAMPLE_RED][k] = rgb[0];
         to[SAMPLE_GREEN][k] = rgb[1];
         to[SAMPLE_BLUE][k] = rgb[2];
+    }
+}
+
+static bool has_light_techniques(const gathering *g)
+{
+    float expected = 0.0f;
+    for (uint32_t face = 0; face < CUBE_FACES; face++)
+        expected += g->expected_in_face[face];
+    return expected > 0.0f;
+}
+
+/* What the density of the light techniques is made of, besides the radiance. */
+static void look_up(const gathering *g, uint32_t count, texel_list *texels)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        const face_place at = {texels->face[i], texels->row[i], texels->column[i], texels->u[i], texels->v[i]};
         texels->solid_angle[i] = g->environment->solid_angle[texels->mirrored[i]];
         texels->exponent[i] = g->pools->tables->row_sums[(size_t)at.face * g->environment->size + at.row].exponent;
         texels->unit[i] = gathering_unit_density(g, &at);
@@ -93,13 +116,13 @@ static inline __attribute__((always_inline)) void find_densities(texel_weight_ki
                                                                  const float *restrict red, float *restrict density)
 {
     const float *green = red + BLOCK_STRIDE, *blue = green + BLOCK_STRIDE;
-    const float level = tables->level, quarter_texels = 0.25f * (float)tables->size * (float)tables->size;
+    const float level = tables->level, quarter = texel_quarter(tables->size);
 #pragma omp simd
     for (uint32_t i = 0; i < count; i++) {
-        const float relative = kind == WEIGHT_LUMINANCE ? 1.0f : texels->solid_angle[i] * quarter_texels;
-        const float weight = texel_weight(kind, (vec3){red[i], green[i], blue[i]}, relative, level);
-        const uint32_t integer = fixed_point_integer(weight, fixed_point_power(texels->exponent[i]));
-        density[i] = face_place_density(texels->u[i], texels->v[i], integer, texels->unit[i]);
+        const vec3 radiance = {red[i], green[i], blue[i]};
+        const uint32_t weight =
+            texel_weight_integer(kind, radiance, texels->solid_angle[i], quarter, level, texels->exponent[i]);
+        density[i] = face_place_density(texels->u[i], texels->v[i], weight, texels->unit[i]);
     }
 }
 
@@ -108,12 +131,11 @@ static void weigh_texels(const gathering *g, uint32_t count, const texel_list *t
     const helio_tables *tables = g->pools->tables;
     const float *red = block->samples[SAMPLE_RED] + block->count;
     float *density = block->samples[SAMPLE_DENSITY] + block->count;
-    if (tables->weighting == HELIO_WEIGHTING_PAPER)
-        find_densities(WEIGHT_LUMINANCE, tables, count, texels, red, density);
-    else if (tables->level > 0.0f)
-        find_densities(WEIGHT_FLUX_ABOVE, tables, count, texels, red, density);
-    else
-        find_densities(WEIGHT_FLUX, tables, count, texels, red, density);
+    switch (texel_weight_kind_of(tables->weighting != HELIO_WEIGHTING_PAPER, tables->level)) {
+    case WEIGHT_LUMINANCE: find_densities(WEIGHT_LUMINANCE, tables, count, texels, red, density); break;
+    case WEIGHT_FLUX_ABOVE: find_densities(WEIGHT_FLUX_ABOVE, tables, count, texels, red, density); break;
+    default: find_densities(WEIGHT_FLUX, tables, count, texels, red, density); break;
+    }
 }
 
 void KERNEL(draw_surface)(const gathering *g, uint32_t first, uint32_t count, sample_block *block)
@@ -128,8 +150,13 @@ void KERNEL(draw_surface)(const gathering *g, uint32_t first, uint32_t count, sa
         draw_directions(HELIO_MATERIAL_GGX, g, first, count, x, y, z);
     texel_list texels;
     find_texels(g, count, x, y, z, &texels);
-    fetch_ahead(g, count, &texels);
-    look_up(g, count, &texels, block);
-    weigh_texels(g, count, &texels, block);
+    const bool has_light = has_light_techniques(g);
+    fetch_ahead(g, has_light, count, &texels);
+    read_texels(g, count, &texels, block);
+    if (has_light) {
+        look_up(g, count, &texels);
+        weigh_texels(g, count, &texels, block);
+    } else
+        memset(block->samples[SAMPLE_DENSITY] + block->count, 0, count * sizeof(float));
     block->count += count;
 }

@@ -12,12 +12,12 @@ static inline __attribute__((always_inline)) float weigh_texels(texel_weight_kin
                                                                 const float *restrict solid_angles, float level,
                                                                 uint32_t size, float *restrict weights)
 {
-    float quarter_texels = 0.25f * (float)size * (float)size;
+    const float quarter = texel_quarter(size);
     int32_t largest_bits = 0;
 #pragma omp simd reduction(max : largest_bits)
     for (uint32_t i = 0; i < size; i++) {
-        float relative = kind == WEIGHT_LUMINANCE ? 1.0f : solid_angles[i] * quarter_texels;
-        weights[i] = texel_weight(kind, vec3_from(rgb + 3 * (size_t)i), relative, level);
+        const float solid_angle = kind == WEIGHT_LUMINANCE ? 0.0f : solid_angles[i];
+        weights[i] = texel_weight(kind, vec3_from(rgb + 3 * (size_t)i), solid_angle, quarter, level);
         int32_t bits = bits_of_float(weights[i]);
         largest_bits = bits > largest_bits ? bits : largest_bits;
     }
@@ -26,11 +26,11 @@ static inline __attribute__((always_inline)) float weigh_texels(texel_weight_kin
 
 static float weigh_row(const float *rgb, const float *solid_angles, float level, uint32_t size, float *weights)
 {
-    if (solid_angles == NULL)
-        return weigh_texels(WEIGHT_LUMINANCE, rgb, NULL, 0.0f, size, weights);
-    if (level > 0.0f)
-        return weigh_texels(WEIGHT_FLUX_ABOVE, rgb, solid_angles, level, size, weights);
-    return weigh_texels(WEIGHT_FLUX, rgb, solid_angles, 0.0f, size, weights);
+    switch (texel_weight_kind_of(solid_angles != NULL, level)) {
+    case WEIGHT_LUMINANCE: return weigh_texels(WEIGHT_LUMINANCE, rgb, NULL, 0.0f, size, weights);
+    case WEIGHT_FLUX_ABOVE: return weigh_texels(WEIGHT_FLUX_ABOVE, rgb, solid_angles, level, size, weights);
+    default: return weigh_texels(WEIGHT_FLUX, rgb, solid_angles, 0.0f, size, weights);
+    }
 }
 
 row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, float level, uint32_t size, uint32_t *sums)

@@ -18,18 +18,36 @@ typedef enum texel_weight_kind {
 /* A texel that is lit weighs at least this much, the smallest float that no machine flushes to zero. */
 static const float LEAST_WEIGHT = 0x1p-126f;
 
-/* Luminance x relative solid angle. Relative to 4 / K sr, the largest that a texel of a fine cube has, so that no
- * product overflows. */
-static inline float texel_weight(texel_weight_kind kind, vec3 radiance, float relative_solid_angle, float level)
+/* solid_angles: whether they count; level: luminance that does not, or 0. */
+static inline texel_weight_kind texel_weight_kind_of(bool solid_angles, float level)
+{
+    return !solid_angles ? WEIGHT_LUMINANCE : level > 0.0f ? WEIGHT_FLUX_ABOVE : WEIGHT_FLUX;
+}
+
+/* A quarter of the texels of a face: solid angles are taken relative to 4 / K sr, the largest that a texel of a fine
+ * cube has, so that no product overflows. */
+static inline float texel_quarter(uint32_t size)
+{
+    return 0.25f * (float)size * (float)size;
+}
+
+static inline float texel_weight(texel_weight_kind kind, vec3 radiance, float solid_angle, float quarter, float level)
 {
     float light = vec3_luminance(radiance);
     float brightest = radiance.x > radiance.y ? radiance.x : radiance.y;
     brightest = brightest > radiance.z ? brightest : radiance.z;
     if (kind == WEIGHT_FLUX_ABOVE)
         brightest = light = light - level;
-    float weight = light * relative_solid_angle;
+    float weight = light * (kind == WEIGHT_LUMINANCE ? 1.0f : solid_angle * quarter);
     float least = brightest > 0.0f ? LEAST_WEIGHT : 0.0f;
     return weight > least ? weight : least;
+}
+
+/* tables_texel_weight() from the radiance. exponent: of the row. */
+static inline uint32_t texel_weight_integer(texel_weight_kind kind, vec3 radiance, float solid_angle, float quarter,
+                                            float level, int32_t exponent)
+{
+    return fixed_point_integer(texel_weight(kind, radiance, solid_angle, quarter, level), fixed_point_power(exponent));
 }
 
 /* Index, in solid angles [R][R], of the texel in one quarter of the face that mirrors this one: the quarter is small

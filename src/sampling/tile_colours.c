@@ -57,7 +57,7 @@ static void cut_texels(const tile_band *band, const float *rgb, float *copies)
 }
 
 /* rows: of cells, of one row of texels where these are cut. */
-static void add_rows(const colour_work *work, uint32_t row, uint32_t rows, tile_band *band)
+static void add_rows_of_band(const colour_work *work, uint32_t row, uint32_t rows, tile_band *band)
 {
     const texel_rows texels = {.rows = rows,
                                .count = band->count,
@@ -108,7 +108,7 @@ static void colour_band(void *data, size_t index)
     lay_band(work, (uint32_t)index, &band);
     const uint32_t end = t->starts[band.row + 1] * band.split, most = band.split > 1 ? 1 : TEXEL_ROWS;
     for (uint32_t row = t->starts[band.row] * band.split; row < end; row += most)
-        add_rows(work, row, end - row < most ? end - row : most, &band);
+        add_rows_of_band(work, row, end - row < most ? end - row : most, &band);
     for (uint32_t face = 0; face < CUBE_FACES; face++)
         for (uint32_t column = band.first; column < band.end; column++)
             colour_tile(work, &band, face, column);

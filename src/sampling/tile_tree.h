@@ -11,7 +11,7 @@
  *   that the error is less; but where the sum of all changes all steps do.
  *
  * Points walk down the tree one node after the other; bins, which weigh all tiles, share all samples of a level out
- * together, see tile_levels.h. See docs/method.md. */
+ * together by tile_levels.h, of which the first kind here is the plain version. See docs/method.md. */
 #ifndef HELIOSTAT_SRC_TILE_TREE_H
 #define HELIOSTAT_SRC_TILE_TREE_H
 

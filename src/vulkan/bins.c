@@ -3,6 +3,7 @@
  * Pools of bins of normals on a device. Where tiles and bins lie is the CPU's work, at creation. */
 #include "core/context.h"
 #include "core/error.h"
+#include "sampling/point_tiles.h"
 #include "vulkan/light.h"
 
 enum { THREADS = 64, THREADS_OF_TILE = 32, BINS_OF_SOFTWARE = 4 };
@@ -10,8 +11,8 @@ _Static_assert(sizeof(control_matrix) == LAYOUT_CONTROL_ROWS * 4 * sizeof(float)
                    (int)LAYOUT_CONTROL_CHUNK == (int)CONTROL_CHUNK,
                "as in control.h");
 _Static_assert((int)LAYOUT_TILE_GROUP == (int)TILE_GROUP && (int)LAYOUT_TILE_RUN == (int)TILE_RUN &&
-                   (int)LAYOUT_TILES_MOST == (int)TILES_MOST,
-               "as in tiles.h");
+                   (int)LAYOUT_TILES_MOST == (int)TILES_MOST && (int)LAYOUT_REFINED_PARTS == (int)POINT_REFINED_PARTS,
+               "as in tiles.h and point_tiles.h");
 
 /* ---- creation ----------------------------------------------------------------------------- */
 

@@ -11,7 +11,7 @@
 #include "vulkan/renderer.h"
 #include "vulkan/textures.h"
 
-enum { PRIMARY_EDGE = 8, MISSES_OF_GROUP = 64 }; /* of a work group: along its edges; in a row */
+enum { PRIMARY_EDGE = 8, MISSES_OF_GROUP = 64 }; /* pixels of a work group: along its edges; those of misses */
 
 /* How work is shared out when points are lit, see shade.comp. */
 typedef struct shade_shape {

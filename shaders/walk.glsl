@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// rectangle.glsl - the threads of a work group walk over the texels of a rectangle, row by row, without a division
+// walk.glsl - the threads of a work group walk over the texels of a rectangle, row by row, without a division
 // for each. Needs common.glsl.
 
 struct walk {
