@@ -152,12 +152,13 @@ static float largest_of(const float *weights)
 {
     enum { LANES = 64 };
     int32_t lanes[LANES] = {0}, largest_bits = 0;
-    for (uint32_t first = 0; first < TILES_MOST; first += LANES)
+    for (uint32_t first = 0; first < TILES_MOST; first += LANES) {
 #pragma omp simd
         for (uint32_t i = 0; i < LANES; i++) {
             int32_t bits = bits_of_float(weights[first + i]);
             lanes[i] = bits > lanes[i] ? bits : lanes[i];
         }
+    }
 #pragma omp simd reduction(max : largest_bits)
     for (uint32_t i = 0; i < LANES; i++)
         largest_bits = lanes[i] > largest_bits ? lanes[i] : largest_bits;

@@ -10,11 +10,6 @@
 
 #include "sampling/tile_tree.h"
 
-enum { TILE_CHILDREN = 16 };
-_Static_assert((int)TILE_CHILDREN == (int)TILE_GROUP && (int)TILE_CHILDREN == (int)TILE_RUN &&
-                   (int)TILE_CHILDREN >= (int)TILE_RUNS,
-               "what a node has at most");
-
 /* Prefix sums over the nodes of each level; what is past the end of all repeats the last. */
 typedef struct tile_levels {
     uint32_t all[2];
@@ -81,17 +76,7 @@ static inline void tile_samples_place(tile_samples *samples, const uint32_t *sum
         samples->places[i] = start + tile_steps_at(&steps);
 }
 
-/* The number of children that end up to the place: one sample, children side by side. */
-static inline uint32_t tile_samples_count_ends(const int32_t *ends, int32_t place)
-{
-    int32_t below = 0;
-#pragma omp simd reduction(+ : below)
-    for (int child = 0; child < TILE_CHILDREN; child++)
-        below += ends[child] <= place;
-    return (uint32_t)below;
-}
-
-/* The same for samples side by side: TILE_LANES, few enough that all children are looked at in registers. */
+/* tile_child_at() for samples side by side: TILE_LANES, few enough that all children are looked at in registers. */
 static inline void tile_samples_count_all_ends(const int32_t *restrict ends, const uint32_t *restrict places,
                                                uint32_t first_child, uint32_t *restrict children)
 {
@@ -134,7 +119,7 @@ static inline void tile_samples_descend_few(tile_samples *samples, uint32_t firs
         end = tile_samples_end(samples, i);
         tile_samples_place(samples, sums, i, end);
         for (; i < end; i++)
-            samples->nodes[i] = first_child + tile_samples_count_ends(ends, (int32_t)samples->places[i]);
+            samples->nodes[i] = first_child + tile_child_at(ends, (int32_t)samples->places[i]);
     }
 }
 

@@ -141,16 +141,42 @@ static inline void tile_walk_tile(tile_walk *w, uint32_t position, uint32_t samp
     }
 }
 
+enum { TILE_CHILDREN = 16 };
+_Static_assert((int)TILE_CHILDREN == (int)TILE_GROUP && (int)TILE_CHILDREN == (int)TILE_RUN &&
+                   (int)TILE_CHILDREN >= (int)TILE_RUNS,
+               "what a node has at most");
+
+/* The child that holds a place: as many end up to it. They are counted side by side, as a search would be guessed wrong
+ * at each turn. */
+static inline uint32_t tile_child_at(const int32_t *ends, int32_t place)
+{
+    int32_t below = 0;
+#pragma omp simd reduction(+ : below)
+    for (int child = 0; child < TILE_CHILDREN; child++)
+        below += ends[child] <= place;
+    return (uint32_t)below;
+}
+
+/* Most tiles of a group get no sample or one, and so each sample looks for its own. */
 static inline void tile_walk_group(tile_walk *w, uint32_t group, uint32_t samples)
 {
     const uint32_t total = w->tree->sums[group + 1] - w->tree->sums[group], first = group * TILE_GROUP;
-    const uint32_t *weights = w->tree->weights + first;
     tile_steps steps = tile_walk_begin(w, total, samples, TILE_TREE_GROUPS + group);
-    for (uint32_t i = 0, sum = weights[0]; steps.left > 0;) {
-        while (sum <= tile_steps_at(&steps))
-            sum += weights[++i];
-        tile_walk_tile(w, first + i, tile_steps_take(&steps, sum));
+    int32_t ends[TILE_CHILDREN], end = 0;
+    for (int i = 0; i < TILE_CHILDREN; i++)
+        ends[i] = end += (int32_t)w->tree->weights[first + (uint32_t)i];
+    uint32_t tile = tile_child_at(ends, (int32_t)tile_steps_at(&steps)), count = 1;
+    while (--steps.left > 0) {
+        steps.place += steps.step;
+        const uint32_t next = tile_child_at(ends, (int32_t)tile_steps_at(&steps));
+        if (next != tile) {
+            tile_walk_tile(w, first + tile, count);
+            tile = next;
+            count = 0;
+        }
+        count++;
     }
+    tile_walk_tile(w, first + tile, count);
 }
 
 /* True where a node's samples are none of those that are wanted: they are left out. */
