@@ -50,10 +50,14 @@ static inline cube_position cube_project(vec3 d)
 }
 
 /* Unit vector towards a point of a face. */
+static inline vec3 cube_direction_on(const cube_face *face, float u, float v)
+{
+    return scale(add_scaled(add_scaled(face->axis, face->right, u), face->down, v), 1.0f / sqrtf(1.0f + u * u + v * v));
+}
+
 static inline vec3 cube_direction(uint32_t face, float u, float v)
 {
-    const cube_face *f = &cube_faces[face];
-    return scale(add_scaled(add_scaled(f->axis, f->right, u), f->down, v), 1.0f / sqrtf(1.0f + u * u + v * v));
+    return cube_direction_on(&cube_faces[face], u, v);
 }
 
 /* Row or column of a face coordinate. Both ends belong to the face, so u = 1 is in the last texel. */

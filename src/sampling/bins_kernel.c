@@ -48,7 +48,7 @@ static void weigh_samples(const normal_bins *bins, uint32_t bin, const uint32_t 
         const control_line line = control_line_of(&b, cosine);
         samples->slopes[i] = line.slope;
         samples->offsets[i] = line.offset;
-        samples->probabilities[i] = (float)(int32_t)(sums[tile + 1] - sums[tile]) * share; /* below 2^31 */
+        samples->probabilities[i] = normal_bins_probability_by(sums, tile, share);
         samples->scales[i] = 1.0f / samples->probabilities[i];
     }
 }

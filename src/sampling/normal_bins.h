@@ -91,11 +91,15 @@ static inline const uint32_t *normal_bins_sums(const normal_bins *b, uint32_t bi
     return b->sums + (size_t)bin * (b->tiles->count + 1);
 }
 
-/* Probability of a tile given the bin. */
+/* Probability of a tile given the bin, by the bin's prefix sums and its share for a unit of weight. */
+static inline float normal_bins_probability_by(const uint32_t *sums, uint32_t position, float share)
+{
+    return (float)(int32_t)(sums[position + 1] - sums[position]) * share; /* below 2^31 */
+}
+
 static inline float normal_bins_probability(const normal_bins *b, uint32_t bin, uint32_t position)
 {
-    const uint32_t *tile = normal_bins_sums(b, bin) + position;
-    return (float)(tile[1] - tile[0]) * b->shares[bin];
+    return normal_bins_probability_by(normal_bins_sums(b, bin), position, b->shares[bin]);
 }
 
 /* face_place_density()'s unit for the density given the bin. */

@@ -218,7 +218,7 @@ typedef struct listed_places {
     alignas(64) float density[GROUP];
 } listed_places;
 
-/* cube_direction() and their density for each. */
+/* Where each is, and its density. */
 static void find_places(const tiles *t, const helio_tables *tables, const tile_texels *tile, const sample_group *group,
                         listed_places *places)
 {
@@ -228,9 +228,8 @@ static void find_places(const tiles *t, const helio_tables *tables, const tile_t
     const int32_t first_line = (int32_t)(tile->face * t->size), per_edge = (int32_t)t->per_edge;
 #pragma omp simd
     for (uint32_t i = 0; i < group->count; i++) {
-        const float u = group->u[i], v = group->v[i], radius2 = 1.0f + u * u + v * v;
-        const vec3 towards = add_scaled(add_scaled(face.axis, face.right, u), face.down, v);
-        const vec3 direction = scale(towards, 1.0f / sqrtf(radius2));
+        const float u = group->u[i], v = group->v[i];
+        const vec3 direction = cube_direction_on(&face, u, v);
         const int32_t texel = group->column.first[i] + (int32_t)group->column.cell[i];
         const uint32_t weight = tables->rows[texel + 1] - tables->rows[texel];
         places->x[i] = direction.x;
