@@ -86,7 +86,7 @@ static float dot(const float a[3], const float b[3])
 static sample_fate judge(const helio_shading_point *point, const helio_sample *sample)
 {
     const float *rgb = sample->contribution;
-    if (rgb[0] + rgb[1] + rgb[2] > 0)
+    if (rgb[0] != 0 || rgb[1] != 0 || rgb[2] != 0) /* below 0 where what is left out as known is more */
         return SAMPLE_USED;
     bool is_above = dot(point->normal, sample->direction) > 0 && dot(point->geometric_normal, sample->direction) > 0;
     return is_above ? SAMPLE_DARK : SAMPLE_BELOW;

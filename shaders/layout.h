@@ -29,7 +29,9 @@
 #define LAYOUT_TILES_PER_EDGE 16
 #define LAYOUT_TILE_GROUP 16 /* tiles that follow each other */
 #define LAYOUT_TILE_RUN 16   /* groups that follow each other */
+#define LAYOUT_GROUP_ROWS 6  /* what is known of a group */
 #define LAYOUT_REFINED_PARTS 256 /* POINT_REFINED_PARTS, see point_tiles.h */
+#define LAYOUT_REFINED_TIMES 6
 #define LAYOUT_TILES_MOST (LAYOUT_FACES * LAYOUT_TILES_PER_EDGE * LAYOUT_TILES_PER_EDGE)
 
 /* layout_state.light and .surface: strategy_light and strategy_surface. */
@@ -278,8 +280,9 @@ struct layout_state {
     ADDRESS(vectors, tile_hues);    /* [tiles + 1]: hue and brightness; at the end brightness per light */
     ADDRESS(vectors, known);        /* [bins][LAYOUT_CONTROL_ROWS] */
     ADDRESS(vectors, control_sums); /* [bins][chunks + 1][LAYOUT_CONTROL_ROWS] */
-    ADDRESS(vectors, groups);  /* [tiles / LAYOUT_TILE_GROUP][3], see tile_groups.h: direction to the middle, edge;
-                                  mean direction of the light, light; variance, spread */
+    ADDRESS(vectors, groups);  /* [tiles / LAYOUT_TILE_GROUP][LAYOUT_GROUP_ROWS], see tile_groups.h: direction to the
+                                  middle, edge; mean direction of the light, light; variance, spread, moment, inner;
+                                  radiance x (x, y, z) */
     UINT size;                     /* R */
     UINT weighting;                /* helio_weighting */
     UINT light, surface;           /* parts of the strategy */

@@ -3,15 +3,16 @@
 // Needs point.glsl and rays.glsl.
 
 vec4 origin_of_rays; // of the point in hand, see read_origin()
+float known_diffuse = 0.0; // of the sample in hand: part of the diffuse lobe that is left out, as its light is known
 
 // Light that reaches the point and the number of useful samples, whether or not they reach it, so far. Of the shadow
 // catcher the luminance that reaches it, and would without the object, in place of light.
 void add_sample(vec3 light, bool counts, vec3 direction, inout vec4 sum)
 {
-    counts = counts && light.r + light.g + light.b > 0.0;
+    const bool useful = light.r + light.g + light.b > 0.0;
     if (VISIBILITY == 0u)
-        sum += counts ? vec4(light, 1.0) : vec4(0.0);
-    else if (counts) {
+        sum += counts && (useful || known_diffuse != 0.0) ? vec4(light, useful ? 1.0 : 0.0) : vec4(0.0);
+    else if (counts && useful) {
         const float whole = luminance(light);
         const vec3 reaching = reaches(origin_of_rays, direction) ? light : vec3(0.0);
         sum += is_of_catcher(origin_of_rays) ? vec4(luminance(reaching), whole, 0.0, 1.0) : vec4(reaching, 1.0);
@@ -28,7 +29,7 @@ void add_light_sample(prepared_point p, vec3 direction, vec3 light, float densit
         light *= density;
         total = density * expected + p.surface_expected * brdf_density(p.surface, direction);
     }
-    const vec3 value = brdf_value(p.surface, direction, cosine);
+    const vec3 value = brdf_value(p.surface, direction, cosine) - known_diffuse * p.surface.colours[0];
     add_sample(light * value * (cosine / total), cosine > 0.0 && above > 0.0 && total > 0.0, direction, sum);
 }
 
@@ -61,7 +62,8 @@ void add_surface_sample(prepared_point p, surface_sample drawn, float of_light, 
                                                            : brdf_density(p.surface, drawn.direction);
     const float total = of_light + p.surface_expected * density;
     const vec3 radiance = texel_radiance(texel_index(drawn.at.face, drawn.at.row, drawn.at.column));
-    const vec3 value = brdf_value(p.surface, drawn.direction, drawn.cosine);
+    const vec3 value =
+        brdf_value(p.surface, drawn.direction, drawn.cosine) - known_diffuse * p.surface.colours[0];
     add_sample(radiance * value * (drawn.cosine / total), total > 0.0, drawn.direction, sum);
 }
 

@@ -30,17 +30,25 @@ const uint GROUPS_MOST = LAYOUT_TILES_MOST / LAYOUT_TILE_GROUP, NOWHERE = GROUPS
 // NOWHERE.
 shared uint groups[GROUPS_MOST], places[GROUPS_MOST];
 shared uint runs[RUNS_MOST + 1u]; // how many of these are before each run of groups
-// Of all groups: the specular lobe that stands for their tiles, or -1 where each has its own; and how much more light
-// there would be if BRDF samples looked after nothing.
-shared float lobes[GROUPS_MOST], gains[GROUPS_MOST];
+// Of all groups: how their tiles are weighed; the BRDF that tiles share; light x BRDF x cosine; and what BRDF samples take
+// of that.
+const uint SHARED = 0u, LOW = 1u, APART = 2u; // all above the horizon with one value of the BRDF; some not; each its own
+shared uint kinds[GROUPS_MOST];
+shared bool knowns[GROUPS_MOST]; // whether the diffuse light is known, and so left out
+shared float values[GROUPS_MOST], weights[GROUPS_MOST], takings[GROUPS_MOST];
 // Before each tile of the chosen groups; at first the bits of the weights, and before that what the specular lobe has of
-// each group.
-shared uint sums[LAYOUT_TILES_MOST + 1];
+// each group. A number is left out after each group, so that threads with a group each reach for different banks of memory.
+shared uint sums[LAYOUT_TILES_MOST + GROUPS_MOST + 1];
 shared float parts[4u * gl_WorkGroupSize.x];
+
+uint slot(uint i)
+{
+    return i + i / LAYOUT_TILE_GROUP;
+}
 
 uint tree_sum(uint i)
 {
-    return sums[i];
+    return sums[slot(i)];
 }
 
 uint tree_run(uint run)
@@ -51,18 +59,20 @@ uint tree_run(uint run)
 const bool TREE_IS_EVEN = true;
 #include "tile_tree.glsl"
 
-// A group of which the specular lobe has more than this part of all light has its tiles weighed by themselves.
-const float REFINED_PART = 1.0 / float(LAYOUT_REFINED_PARTS);
-
 // See tile_lobe in point_tiles.h.
 struct tile_lobe {
-    float diffuse, specular, width, alpha, to_surface;
+    float diffuse, specular, width, alpha, to_surface, least_part;
+    bool knows_diffuse;
+    vec3 geometric_normal;
 };
 
-tile_lobe prepare_lobe(brdf b)
+tile_lobe prepare_lobe(brdf b, vec3 geometric_normal)
 {
     const float edge2 = STATE.tile_edge * STATE.tile_edge;
-    tile_lobe lobe = tile_lobe(luminance(b.colours[0]), luminance(b.colours[1]), 0.0, 0.0, to_surface(b));
+    const float diffuse = luminance(b.colours[0]);
+    const float least_part = (1.0 + float(LAYOUT_REFINED_TIMES - 1) * need_of_lobe(b)) / float(LAYOUT_REFINED_PARTS);
+    const bool knows_diffuse = VISIBILITY == 0u && STEP.control_part == 1.0 && diffuse > 0.0;
+    tile_lobe lobe = tile_lobe(diffuse, luminance(b.colours[1]), 0.0, 0.0, to_surface(b), least_part, knows_diffuse, geometric_normal);
     if (is_ggx(b.kind)) {
         lobe.alpha = sqrt(b.shape);
         lobe.width = b.shape + edge2;
@@ -132,20 +142,26 @@ void find_runs(uint count)
 // the horizon. As look_at_groups() in point_tiles_kernel.c.
 float look_at_group(brdf b, tile_lobe lobe, uint i)
 {
-    const vec4 middle = vector_at(STATE.groups, 3u * i), light = vector_at(STATE.groups, 3u * i + 1u);
-    const vec2 width = vector_at(STATE.groups, 3u * i + 2u).xy; // variance and spread
-    if (light.w == 0.0 || dot(b.normal, middle.xyz) <= -middle.w) {
+    const uint row = LAYOUT_GROUP_ROWS * i;
+    const vec4 middle = vector_at(STATE.groups, row), light = vector_at(STATE.groups, row + 1u);
+    const vec4 width = vector_at(STATE.groups, row + 2u); // variance, spread, moment, and what is above the horizon
+    const float above = dot(b.normal, middle.xyz), cosine = dot(b.normal, light.xyz);
+    knowns[i] = lobe.knows_diffuse && above >= middle.w && dot(lobe.geometric_normal, middle.xyz) >= middle.w;
+    if (light.w == 0.0 || above <= -middle.w) {
         places[i] = NOWHERE;
         return 0.0;
     }
-    const float cosine = dot(b.normal, light.xyz), soft = soft_cosine(cosine, middle.w);
+    const float soft = soft_cosine(cosine, middle.w);
     const float all = specular_at(b, lobe, light.xyz, lobe.width + width.x, cosine, soft);
     const float specular = all / (1.0 + lobe.to_surface * width.y);
+    const float lit = above < width.w ? light.w * soft : width.z * cosine;
     places[i] = 0u;
-    lobes[i] = specular;
-    gains[i] = (lobe.diffuse + all) / (lobe.diffuse + specular);
-    sums[i] = floatBitsToUint(light.w * soft * specular);
-    return light.w * soft * (lobe.diffuse + specular);
+    kinds[i] = above < width.w ? LOW : SHARED;
+    values[i] = (knowns[i] ? 0.0 : lobe.diffuse) + specular;
+    takings[i] = lit * (all - specular);
+    weights[i] = lit * values[i];
+    sums[i] = floatBitsToUint(lit * specular);
+    return weights[i];
 }
 
 // Returns how many groups there are, each thread having looked at some that follow each other.
@@ -161,14 +177,14 @@ uint choose_groups(brdf b, tile_lobe lobe)
         if (places[i] != NOWHERE)
             places[i] = own++;
     }
-    const float least = sum_of_group(vec4(weight, 0.0, 0.0, 0.0)).x * REFINED_PART;
+    const float least = sum_of_group(vec4(weight, 0.0, 0.0, 0.0)).x * lobe.least_part;
     const uint before = sum_before_in_group(own, count);
     for (uint i = begin; i < end; i++)
         if (places[i] != NOWHERE) {
             places[i] += before;
             groups[places[i]] = i;
             if (uintBitsToFloat(sums[i]) > least)
-                lobes[i] = -1.0;
+                kinds[i] = APART;
         }
     barrier();
     find_runs(count);
@@ -181,52 +197,111 @@ uint position_of(uint i)
     return groups[i / LAYOUT_TILE_GROUP] * LAYOUT_TILE_GROUP + i % LAYOUT_TILE_GROUP;
 }
 
-// Light x BRDF x cosine of a tile: of what BRDF samples leave, and of all.
+// Light x BRDF x cosine of a tile: of what BRDF samples leave; and what they take, where the lobe is the tile's own.
 vec2 weigh(brdf b, tile_lobe lobe, uint position)
 {
     if (position >= STATE.tile_count)
         return vec2(0.0);
     const vec4 tile = vector_at(STATE.tiles, position);
     const uint group = position / LAYOUT_TILE_GROUP;
-    const float cosine = dot(b.normal, tile.xyz), soft = soft_cosine(cosine, STATE.tile_edge);
-    const float light = tile.w > 0.0 ? tile.w * soft : 0.0;
-    if (lobes[group] >= 0.0)
-        return light * (lobe.diffuse + lobes[group]) * vec2(1.0, gains[group]);
+    const float cosine = dot(b.normal, tile.xyz), light = max(tile.w, 0.0);
+    if (kinds[group] == SHARED)
+        return vec2(light * (cosine * values[group]), 0.0);
+    const float soft = soft_cosine(cosine, STATE.tile_edge);
+    if (kinds[group] == LOW)
+        return vec2(light * (soft * values[group]), 0.0);
     const float all = specular_at(b, lobe, tile.xyz, lobe.width, cosine, soft);
     const float specular = all / (1.0 + lobe.to_surface * STATE.tile_spreads.at[position]);
-    return light * (lobe.diffuse + vec2(specular, all));
+    return light * soft * vec2((knowns[group] ? 0.0 : lobe.diffuse) + specular, all - specular);
 }
 
-// Fills in the sums of `count` tiles and returns that of all. left: part of the light that is left to BRDF samples.
-// brightness: of the rest. Threads take pieces of odd lengths, so that neighbours reach for different banks of memory.
+float weight_at(uint i)
+{
+    return uintBitsToFloat(sums[slot(i)]);
+}
+
+const float BLACK_BELOW = 7.88860905e-31; // 2^-100
+
+// The sum of a group's tiles, unless it is known; 0 below 2^-100, so that nothing that is divided is subnormal. As sum_of_tiles() and
+// share_out() in point_tiles_kernel.c.
+float sum_group(uint place)
+{
+    const uint first = place * LAYOUT_TILE_GROUP;
+    float weight = weights[groups[place]];
+    if (kinds[groups[place]] != SHARED) {
+        float four[4];
+        for (uint i = 0u; i < 4u; i++)
+            four[i] = (weight_at(first + i) + weight_at(first + i + 8u)) +
+                      (weight_at(first + i + 4u) + weight_at(first + i + 12u));
+        weight = (four[0] + four[2]) + (four[1] + four[3]);
+    }
+    return weight >= BLACK_BELOW ? weight : 0.0;
+}
+
+// Of a group that is not black the weight is at least this, so that each tile, however dark, can have 1 or more.
+const uint LEAST_WEIGHT = LAYOUT_TILE_GROUP * LAYOUT_TILE_GROUP;
+
+uint group_integer(uint place, float factor)
+{
+    const float weight = weights[groups[place]];
+    return weight > 0.0 ? max(fixed_point_integer(weight, factor), LEAST_WEIGHT) : 0u;
+}
+
+// The sums of a group's tiles: rounded down, and what is left over or too much a heavy tile takes. As know_tiles() in
+// point_tiles_kernel.c. before: of the groups before it.
+void divide_group(uint place, uint whole, uint before)
+{
+    const uint first = place * LAYOUT_TILE_GROUP;
+    const float weight = weights[groups[place]], least = weight * (0.99 / float(LAYOUT_TILE_GROUP));
+    const float per_weight = whole > 0u ? 1.0 / weight : 0.0;
+    uint heavy = LAYOUT_TILE_GROUP, sum = 0u, integers[LAYOUT_TILE_GROUP];
+    for (uint i = 0u; i < LAYOUT_TILE_GROUP; i++) {
+        const float own = weight_at(first + i);
+        integers[i] = whole > 0u && own > 0.0 ? max(uint(own * per_weight * float(whole)), 1u) : 0u;
+        heavy = heavy == LAYOUT_TILE_GROUP && own >= least ? i : heavy;
+        sum += integers[i];
+    }
+    for (uint i = 0u; i < LAYOUT_TILE_GROUP; i++) {
+        sums[slot(first + i)] = before;
+        before += integers[i] + (i == heavy ? whole - sum : 0u);
+    }
+}
+
+// Fills in the sums of the tiles of `count` groups and returns that of all. left: part of the light that is left to BRDF
+// samples. brightness: of the rest.
 uint weigh_tiles(brdf b, tile_lobe lobe, uint count, out float left, out float brightness)
 {
-    const uint each = (count + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x | 1u;
+    const uint each = (count + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x;
     const uint begin = min(each * gl_LocalInvocationID.x, count), end = min(begin + each, count);
     uint largest = 0u, own = 0u, total;
-    vec2 light = vec2(0.0);
-    for (uint i = gl_LocalInvocationID.x; i < count; i += gl_WorkGroupSize.x) {
+    vec2 light = vec2(0.0); // and what BRDF samples take
+    for (uint i = gl_LocalInvocationID.x; i < count * LAYOUT_TILE_GROUP; i += gl_WorkGroupSize.x) {
         const vec2 weight = weigh(b, lobe, position_of(i));
-        const uint bits = floatBitsToUint(weight.x);
-        sums[i] = bits;
-        largest = max(largest, bits);
-        light += weight;
+        sums[slot(i)] = floatBitsToUint(weight.x);
+        light.y += weight.y;
+    }
+    barrier();
+    for (uint place = begin; place < end; place++) {
+        const float weight = sum_group(place);
+        weights[groups[place]] = weight;
+        light += vec2(weight, kinds[groups[place]] != APART ? takings[groups[place]] : 0.0);
+        largest = max(largest, floatBitsToUint(weight));
     }
     light = sum_of_group(vec4(light, 0.0, 0.0)).xy;
     brightness = light.x;
-    left = light.y > light.x ? 1.0 - light.x / light.y : 0.0;
-    const int exponent = fixed_point_exponent(greatest_in_group(largest), summand_bits(STATE.tile_count));
+    left = light.y > 0.0 ? light.y / (light.x + light.y) : 0.0;
+    const int exponent = fixed_point_exponent(greatest_in_group(largest), summand_bits(GROUPS_MOST));
     const float factor = power_of_two(exponent);
-    for (uint i = begin; i < end; i++)
-        own += fixed_point_integer(uintBitsToFloat(sums[i]), factor);
+    for (uint place = begin; place < end; place++)
+        own += group_integer(place, factor);
     uint before = sum_before_in_group(own, total);
-    for (uint i = begin; i < end; i++) {
-        const uint weight = fixed_point_integer(uintBitsToFloat(sums[i]), factor);
-        sums[i] = before;
-        before += weight;
+    for (uint place = begin; place < end; place++) {
+        const uint whole = group_integer(place, factor);
+        divide_group(place, whole, before);
+        before += whole;
     }
     if (gl_LocalInvocationID.x == 0u)
-        sums[count] = total;
+        sums[slot(count * LAYOUT_TILE_GROUP)] = total;
     barrier();
     return total;
 }
@@ -241,12 +316,13 @@ void add_tile_sample(prepared_point p, uint index, uint total, inout vec4 sum, i
     tree_sample s = begin_in_run(seed, index, p.end[0], run);
     s = descend(s, LAYOUT_TILE_GROUP, tree_random(seed, TREE_NODE_RUNS + run));
     s = descend(s, 1u, tree_random(seed, TREE_NODE_GROUPS + groups[s.begin / LAYOUT_TILE_GROUP]));
-    const uint position = position_of(s.begin), weight = sums[s.end] - sums[s.begin];
+    const uint position = position_of(s.begin), weight = tree_sum(s.end) - tree_sum(s.begin);
     const uint start = STATE.list_starts.at[position], length = STATE.list_starts.at[position + 1u] - start;
     const uint element = 2u * (start + tree_element(s, seed, position, length));
     const vec4 direction = vector_at(STATE.listed, element);
     const float probability = float(weight) / float(total);
     const vec3 light = vector_at(STATE.listed, element + 1u).rgb;
+    known_diffuse = knowns[position / LAYOUT_TILE_GROUP] ? 1.0 : 0.0;
     hues += light * (dot(vector_at(STATE.tiles, position).xyz, direction.xyz) / STATE.tile_hues.at[position].w);
     add_light_sample(p, direction.xyz, light / probability, probability * direction.w, p.expected[0], true, sum);
 }
@@ -255,7 +331,7 @@ float density_of_tiles(prepared_point p, face_place at, uint total)
 {
     const uint position = tile_position(at), place = places[position / LAYOUT_TILE_GROUP];
     const uint tile = place * LAYOUT_TILE_GROUP + position % LAYOUT_TILE_GROUP;
-    const uint weight = place != NOWHERE ? sums[tile + 1u] - sums[tile] : 0u;
+    const uint weight = place != NOWHERE ? tree_sum(tile + 1u) - tree_sum(tile) : 0u;
     return weight != 0u ? p.expected[0] * (float(weight) / float(total) * tile_density(at)) : 0.0;
 }
 
@@ -267,7 +343,7 @@ vec3 control_hue(prepared_point p, uint count, uint total, float brightness, vec
         return vec3(0.0);
     vec3 known = vec3(0.0);
     for (uint i = gl_LocalInvocationID.x; i < count; i += gl_WorkGroupSize.x) {
-        const uint weight = sums[i + 1u] - sums[i];
+        const uint weight = tree_sum(i + 1u) - tree_sum(i);
         if (weight != 0u)
             known += float(weight) * vector_at(STATE.tile_hues, position_of(i)).rgb;
     }
@@ -288,11 +364,23 @@ vec4 light_point(prepared_point p, uint count, uint total, float brightness)
         add_tile_sample(p, i, total, sum, hues);
     for (uint i = gl_LocalInvocationID.x; i < p.surface_count; i += gl_WorkGroupSize.x) {
         const surface_sample drawn = draw_surface_sample(p, i);
+        known_diffuse = knowns[tile_position(drawn.at) / LAYOUT_TILE_GROUP] ? 1.0 : 0.0;
         if (drawn.counts)
             add_surface_sample(p, drawn, density_of_tiles(p, drawn.at, total), sum);
     }
     sum.rgb += control_hue(p, count, total, brightness, hues);
     return sum;
+}
+
+// Diffuse light of the groups where it is known: a thread's part of it.
+vec3 known_light(prepared_point p, tile_lobe lobe)
+{
+    const uint all = (STATE.tile_count + LAYOUT_TILE_GROUP - 1u) / LAYOUT_TILE_GROUP;
+    vec3 irradiance = vec3(0.0);
+    for (uint i = gl_LocalInvocationID.x; lobe.knows_diffuse && i < all; i += gl_WorkGroupSize.x)
+        for (uint row = 0u; knowns[i] && row < 3u; row++)
+            irradiance += vector_at(STATE.groups, LAYOUT_GROUP_ROWS * i + 3u + row).rgb * p.surface.normal[row];
+    return irradiance * p.surface.colours[0];
 }
 
 // See begin_tiles() in estimate.c.
@@ -315,12 +403,13 @@ void main()
     if (!weighs_tiles(p))
         return;
     float left, brightness;
-    const tile_lobe lobe = prepare_lobe(p.surface);
-    const uint count = choose_groups(p.surface, lobe) * LAYOUT_TILE_GROUP;
-    const uint total = weigh_tiles(p.surface, lobe, count, left, brightness);
+    const tile_lobe lobe = prepare_lobe(p.surface, p.geometric_normal);
+    const uint group_count = choose_groups(p.surface, lobe), count = group_count * LAYOUT_TILE_GROUP;
+    const uint total = weigh_tiles(p.surface, lobe, group_count, left, brightness);
     divide_samples(left, p);
     p.surface.specular_share = 1.0; // of what the tiles leave over
-    const vec4 sum = sum_of_group(total != 0u ? light_point(p, count, total, brightness) : vec4(0.0));
+    const vec4 own = total != 0u ? light_point(p, count, total, brightness) : vec4(0.0);
+    const vec4 sum = sum_of_group(own + vec4(known_light(p, lobe), 0.0));
     if (gl_LocalInvocationID.x != 0u)
         return;
     film_add(given.pixel, sum.rgb * STEP.intensity, true, given.hit == LAYOUT_HIT_OBJECT);

@@ -3,7 +3,7 @@
 //
 // The light of all tiles in proportion to the brightest, by a single work group. As find_light() in
 // src/sampling/tiles.c. What brightness that is, as find_hues() in tile_colours.c has it. And the light of groups of
-// tiles, as sum_group() in tile_groups.c.
+// tiles, as sum_group() and sum_colour() in tile_groups.c.
 #include "common.glsl"
 #include "fixed_point.glsl"
 #include "scan.glsl"
@@ -39,9 +39,16 @@ void sum_group_of_tiles(uint group, int exponent)
         sum += own * STATE.tiles.at[i].xyz;
     }
     const float size = length(sum), part = light > 0.0 ? min(size / light, 1.0) : 1.0;
-    const vec3 mean = part > 1e-3 && size > 0.0 ? sum / size : STATE.groups.at[3u * group].xyz;
-    STATE.groups.at[3u * group + 1u] = vec4(mean, light);
-    STATE.groups.at[3u * group + 2u] = vec4(1.0 - part * part, light > 0.0 ? spread / light : 0.0, 0.0, 0.0);
+    const vec3 mean = part > 1e-3 && size > 0.0 ? sum / size : STATE.groups.at[LAYOUT_GROUP_ROWS * group].xyz;
+    STATE.groups.at[LAYOUT_GROUP_ROWS * group + 1u] = vec4(mean, light);
+    STATE.groups.at[LAYOUT_GROUP_ROWS * group + 2u].xyz =
+        vec3(1.0 - part * part, light > 0.0 ? spread / light : 0.0, size);
+    for (uint row = 0u; row < 3u; row++) {
+        vec4 radiance = vec4(0.0);
+        for (uint i = group * LAYOUT_TILE_GROUP; i < end; i++)
+            radiance += STATE.tile_light.at[LAYOUT_CONTROL_ROWS * i + row];
+        STATE.groups.at[LAYOUT_GROUP_ROWS * group + 3u + row] = radiance;
+    }
 }
 
 void main()

@@ -200,7 +200,9 @@ static double strategy_density(const world *w, const helio_counts *counts, const
     return sum;
 }
 
-static void prepare(const world *w, const helio_shading_point *point, vec3 normal, vec3 view, drawing_surface *s)
+/* is_free: as in helio_estimate_desc. */
+static void prepare(const world *w, const helio_shading_point *point, vec3 normal, vec3 view, bool is_free,
+                    drawing_surface *s)
 {
     s->surface = brdf_prepare(&point->material, normal, view);
     s->has_tiles = w->pools->bins != NULL && w->pools->parts.surface == STRATEGY_SURFACE_BRDF &&
@@ -209,7 +211,11 @@ static void prepare(const world *w, const helio_shading_point *point, vec3 norma
         return;
     tile_lobe lobe;
     tile_lobe_prepare(&lobe, w->pools->bins->tiles, &s->surface);
+    lobe.knows_diffuse = is_free && lobe.diffuse > 0.0f;
+    lobe.geometric_normal = environment_to_map(w->environment, vec3_from(point->geometric_normal));
     kernels_of(ISA_SCALAR)->weigh_point(w->pools->bins->tiles, &lobe, &s->tiles);
+    for (uint32_t group = 0; group < TILE_GROUPS; group++)
+        kernels_of(ISA_SCALAR)->know_tiles(&s->tiles, group);
     s->surface.specular_share = 1.0f;
 }
 
@@ -222,7 +228,7 @@ static quadrature integrate(const world *w, const helio_shading_point *point, co
     vec3 flat = environment_to_map(environment, vec3_from(point->geometric_normal));
     vec3 view = brdf_lift_view(normal, environment_to_map(environment, vec3_from(point->view)));
     static drawing_surface surface;
-    prepare(w, point, normal, view, &surface);
+    prepare(w, point, normal, view, false, &surface);
     quadrature result = {0, 0};
     double cell = 2.0 / (size * parts);
     for (uint32_t face = 0; face < 6; face++)
@@ -445,7 +451,7 @@ static void expect_bins(const world *w, const helio_shading_point *point, const 
     vec3 normal = environment_to_map(environment, vec3_from(point->normal));
     vec3 view = brdf_lift_view(normal, environment_to_map(environment, vec3_from(point->view)));
     static drawing_surface surface;
-    prepare(w, point, normal, view, &surface);
+    prepare(w, point, normal, view, false, &surface);
     double cell = 2.0 / (8 * CELLS);
     memset(expected, 0, BINS * sizeof *expected);
     for (uint32_t face = 0; face < 6; face++)
@@ -832,16 +838,17 @@ static void answer_all(void *user, const helio_shading_point *point, uint32_t co
 }
 
 /* That of BRDF samples, which never look at the tables, by the tables. */
-static void check_densities(const world *w, const helio_shading_point *point)
+static void check_densities(const world *w, const helio_shading_point *point, bool is_free)
 {
+    const helio_estimate_desc desc = {.is_free = is_free};
     helio_sample samples[64];
     helio_counts counts;
     uint32_t count;
     static drawing_surface surface;
     const vec3 normal = vec3_from(point->normal);
-    assert_ok(helio_gather(w->pools, point, NULL, samples, &count));
-    assert_ok(helio_count(w->pools, point, NULL, &counts));
-    prepare(w, point, normal, brdf_lift_view(normal, vec3_from(point->view)), &surface);
+    assert_ok(helio_gather(w->pools, point, &desc, samples, &count));
+    assert_ok(helio_count(w->pools, point, &desc, &counts));
+    prepare(w, point, normal, brdf_lift_view(normal, vec3_from(point->view)), is_free, &surface);
     for (uint32_t k = 0; k < count; k++)
         if (samples[k].technique == 6) {
             const double expected = strategy_density(w, &counts, &surface, vec3_from(samples[k].direction));
@@ -865,8 +872,8 @@ static void densities_of_gathered_samples_are_those_of_the_tables(void **state)
                 world w = make_world(context, &maps[m], weighting, strategy, 512);
                 helio_shading_point points[POINTS];
                 make_points(points);
-                for (int i = 0; i < POINTS; i++)
-                    check_densities(&w, &points[i]);
+                for (int i = 0; i < 2 * POINTS; i++)
+                    check_densities(&w, &points[i / 2], i % 2 == 1);
                 destroy_world(&w);
             }
     helio_context_destroy(context);

@@ -366,7 +366,7 @@ static void light_summed_in_the_pools_is_that_of_the_samples(void **state)
         for (int s = 0; s < STRATEGIES; s++)
             for (int k = 0; k < MATERIALS; k++) {
                 pipeline p = make_pipeline(helio_isa_name(i), 1, &map, HELIO_WEIGHTING_SOLID_ANGLE, strategies[s]);
-                const helio_estimate_desc desc = {.samples = counts[k % 6]};
+                const helio_estimate_desc desc = {.samples = counts[k % 6], .is_free = true};
                 uint64_t random = 7;
                 for (int n = 0; n < TOGETHER; n++)
                     points[n] = make_point(&random, &materials[(k + n % 2) % MATERIALS].material);

@@ -9,6 +9,7 @@
 
 #include <heliostat/heliostat.h>
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -524,6 +525,22 @@ static brdf some_surface(const helio_material *material, uint64_t *seed)
     return brdf_prepare(material, normal, brdf_lift_view(normal, view));
 }
 
+/* Weighs all groups, and all tiles. */
+static void weigh_all(isa set, const tiles *t, const tile_lobe *lobe, point_tiles *p)
+{
+    kernels_of(set)->weigh_point(t, lobe, p);
+    for (uint32_t group = 0; group < TILE_GROUPS; group++)
+        kernels_of(set)->know_tiles(p, group);
+}
+
+static uint32_t sum_of_group(const point_tiles *p, uint32_t group)
+{
+    uint32_t sum = 0;
+    for (uint32_t i = 0; i < TILE_GROUP; i++)
+        sum += p->weights[group * TILE_GROUP + i];
+    return sum;
+}
+
 /* Weights sum to what they are said to sum to; every tile that holds light above the horizon has one; the probabilities
  * are their shares; and all instruction sets find the same. */
 static void points_weigh_every_tile_that_can_light_them(void **state)
@@ -539,7 +556,10 @@ static void points_weigh_every_tile_that_can_light_them(void **state)
             brdf surface = some_surface(&shiny[m % SHINY], &seed);
             tile_lobe lobe;
             tile_lobe_prepare(&lobe, t, &surface);
-            kernels_of(ISA_SCALAR)->weigh_point(t, &lobe, &p);
+            lobe.knows_diffuse = m % 2 == 1;
+            weigh_all(ISA_SCALAR, t, &lobe, &p);
+            for (uint32_t group = 0; group < TILE_GROUPS; group++)
+                assert_int_equal(sum_of_group(&p, group), p.sums[group + 1] - p.sums[group]);
             uint64_t sum = 0;
             double probability = 0;
             for (uint32_t i = 0; i < t->count; i++) {
@@ -555,17 +575,24 @@ static void points_weigh_every_tile_that_can_light_them(void **state)
                 cube_position at = cube_project(direction);
                 uint32_t row = cube_texel(at.v, t->size), column = cube_texel(at.u, t->size);
                 uint32_t position = tiles_position(t, at.face, row, column);
-                if (dot(surface.normal, direction) > 0 && t->light[position] > 0 && lobe.diffuse > 0)
+                if (dot(surface.normal, direction) > 0 && t->light[position] > 0 && lobe.diffuse > 0 &&
+                    !lobe.knows_diffuse)
                     assert_true(p.weights[position] > 0);
             }
             for (uint32_t i = 1; helio_isa_name(i) != NULL; i++) {
                 isa set;
                 assert_ok(isa_choose(helio_isa_name(i), &set));
-                kernels_of(set)->weigh_point(t, &lobe, &other);
+                weigh_all(set, t, &lobe, &other);
                 assert_int_equal(p.total, other.total);
                 assert_true(p.left == other.left && p.share == other.share && p.brightness == other.brightness);
                 assert_memory_equal(p.sums, other.sums, sizeof p.sums);
                 assert_memory_equal(p.weights, other.weights, sizeof p.weights);
+                assert_memory_equal(p.knows_diffuse, other.knows_diffuse, sizeof p.knows_diffuse);
+                for (int c = 0; c < 3; c++) {
+                    assert_float_equal(p.hue[c], other.hue[c], 1e-4f * fabsf(p.hue[c]));
+                    assert_true(!lobe.knows_diffuse ||
+                                fabsf(p.irradiance[c] - other.irradiance[c]) <= 1e-5f * p.irradiance[c]);
+                }
             }
         }
         destroy_world(&w);
@@ -573,7 +600,57 @@ static void points_weigh_every_tile_that_can_light_them(void **state)
     }
 }
 
-/* ---- the strategy that chooses itself ---- */
+/* Light x cosine of a tile that is above the horizon, as all are of a group that shares its lobe. */
+static double light_above(const tiles *t, vec3 normal, uint32_t position)
+{
+    return (double)t->light[position] * (double)dot(normal, (vec3){t->x[position], t->y[position], t->z[position]});
+}
+
+/* Where tiles share the lobe of their group its weight and its mean hue come from sums of the frame, and tiles have
+ * weights only when somebody asks: they are the same as if each had been weighed. */
+static void groups_know_what_their_tiles_weigh(void **state)
+{
+    (void)state;
+    enum { R = 64 };
+    static point_tiles p;
+    float *map = make_sky(R, 5);
+    world w = make_world(map, R, 2, 64, HELIO_WEIGHTING_SOLID_ANGLE);
+    const tiles *t = w.pools->bins->tiles;
+    uint64_t seed = 8;
+    uint32_t shared = 0, looked_at = 0;
+    for (int m = 0; m < SHINY * TRIED; m++) {
+        brdf surface = some_surface(&shiny[m % SHINY], &seed);
+        tile_lobe lobe;
+        tile_lobe_prepare(&lobe, t, &surface);
+        lobe.knows_diffuse = m % 2 == 1;
+        weigh_all(ISA_SCALAR, t, &lobe, &p);
+        double hue[3] = {0};
+        for (uint32_t group = 0; group < TILE_GROUPS; group++) {
+            const bool is_shared = p.is_shared[group];
+            const uint32_t first = group * TILE_GROUP, whole = p.sums[group + 1] - p.sums[group];
+            double sum = 0;
+            for (uint32_t i = first; i < first + TILE_GROUP && whole > 0; i++)
+                sum += is_shared ? light_above(t, surface.normal, i) * (double)p.value[group] : (double)p.looked_at[i];
+            assert_true(whole == 0 || fabs(sum / (double)p.weight[group] - 1) < 1e-5);
+            for (uint32_t i = first; i < first + TILE_GROUP && whole > 1 << 12; i++) {
+                double part =
+                    is_shared ? light_above(t, surface.normal, i) * (double)p.value[group] : (double)p.looked_at[i];
+                assert_true(fabs((double)p.weights[i] / whole - part / sum) < TILE_GROUP / (double)whole + 1e-5);
+            }
+            shared += whole > 0 && is_shared;
+            looked_at += whole > 0 && !is_shared;
+        }
+        for (uint32_t i = 0; i < t->count; i++)
+            for (int c = 0; c < 3; c++)
+                hue[c] += (double)(p.looked_at[i] / p.brightness) * (double)t->colours.hue[c][i] *
+                          (p.sums[i / TILE_GROUP + 1] > p.sums[i / TILE_GROUP]);
+        for (int c = 0; c < 3 && p.total > 0; c++)
+            assert_true(fabs(hue[c] - (double)p.hue[c]) < 1e-5 * fabs(hue[c]) + 1e-6);
+    }
+    assert_true(shared > 100 && looked_at > 100);
+    destroy_world(&w);
+    free(map);
+}
 
 static helio_pools *make_pools(const world *w, helio_strategy strategy)
 {
@@ -582,6 +659,83 @@ static helio_pools *make_pools(const world *w, helio_strategy strategy)
     assert_ok(helio_pools_draw(pools, 3, 1));
     return pools;
 }
+
+/* Groups whose tiles are wholly above both horizons are those of which the diffuse light is known: what is known is its
+ * integral, and samples are left the lobe that shines. */
+static void diffuse_light_of_groups_above_both_horizons_is_known(void **state)
+{
+    (void)state;
+    enum { R = 64 };
+    static point_tiles p, other;
+    float *map = make_sky(R, 5);
+    world w = make_world(map, R, 2, 64, HELIO_WEIGHTING_SOLID_ANGLE);
+    const tiles *t = w.pools->bins->tiles;
+    uint64_t seed = 8;
+    uint32_t known = 0;
+    for (int m = 0; m < SHINY * TRIED; m++) {
+        brdf surface = some_surface(&shiny[m % SHINY], &seed);
+        tile_lobe lobe;
+        tile_lobe_prepare(&lobe, t, &surface);
+        lobe.geometric_normal = normalize(add_scaled(surface.normal, some_direction(&seed), 0.3f));
+        weigh_all(ISA_SCALAR, t, &lobe, &other);
+        for (uint32_t group = 0; group < TILE_GROUPS; group++)
+            assert_true(other.knows_diffuse[group] == 0.0f);
+        lobe.knows_diffuse = true;
+        weigh_all(ISA_SCALAR, t, &lobe, &p);
+        double irradiance[3] = {0};
+        for (uint32_t i = 0; i < t->count; i++) {
+            if (p.knows_diffuse[i / TILE_GROUP] == 0.0f)
+                continue;
+            const vec3 centre = {t->x[i], t->y[i], t->z[i]};
+            assert_true(dot(surface.normal, centre) > t->edge && dot(lobe.geometric_normal, centre) > t->edge);
+            for (int c = 0; c < 3; c++)
+                irradiance[c] += (double)t->colours.light[0][c][i] * (double)surface.normal.x +
+                                 (double)t->colours.light[1][c][i] * (double)surface.normal.y +
+                                 (double)t->colours.light[2][c][i] * (double)surface.normal.z;
+            known++;
+        }
+        for (int c = 0; c < 3; c++)
+            assert_true(fabs(irradiance[c] - (double)p.irradiance[c]) <= 1e-5 * irradiance[c]);
+        assert_true(p.brightness <= other.brightness * 1.0001f);
+    }
+    assert_true(known > 1000);
+    destroy_world(&w);
+    free(map);
+}
+
+/* Where nothing shines and no light is near the horizon, nothing is left to chance. */
+static void what_is_known_is_not_sampled(void **state)
+{
+    (void)state;
+    enum { R = 64 };
+    float *map = make_map(R);
+    for (size_t i = 0; i < (size_t)R * R; i++)
+        map[((size_t)2 * R * R + i) * 3] = map[((size_t)2 * R * R + i) * 3 + 1] = 1.0f + (float)(i % 7); /* up */
+    world w = make_world(map, R, 8, 256, HELIO_WEIGHTING_SOLID_ANGLE);
+    helio_pools *pools = make_pools(&w, HELIO_STRATEGY_PRODUCT_BRDF);
+    helio_shading_point point = {
+        .material = {.kind = HELIO_MATERIAL_PHONG,
+                     .diffuse = {0.5f, 0.5f, 0.5f},
+                     .specular = {1e-4f, 1e-4f, 1e-4f},
+                     .exponent = 20},
+        .normal = {0, 1, 0},
+        .view = {0, 1, 0},
+    };
+    float least = FLT_MAX, most = 0;
+    for (uint32_t i = 0; i < 100; i++) {
+        float radiance[3];
+        point.seed = i;
+        assert_ok(helio_estimate(pools, &point, NULL, radiance, NULL));
+        least = fminf(least, radiance[0]);
+        most = fmaxf(most, radiance[0]);
+    }
+    assert_true(least > 0.1f && most < least * 1.001f);
+    helio_pools_destroy(pools);
+    destroy_world(&w);
+    free(map);
+}
+
+/* ---- the strategy that chooses itself ---- */
 
 static bool estimates_agree(const helio_pools *a, const helio_pools *b)
 {
@@ -662,6 +816,9 @@ int main(void)
         cmocka_unit_test(groups_hold_the_light_of_their_tiles),
         cmocka_unit_test(the_light_of_one_tile_is_its_groups),
         cmocka_unit_test(points_weigh_every_tile_that_can_light_them),
+        cmocka_unit_test(groups_know_what_their_tiles_weigh),
+        cmocka_unit_test(diffuse_light_of_groups_above_both_horizons_is_known),
+        cmocka_unit_test(what_is_known_is_not_sampled),
         cmocka_unit_test(auto_aims_only_where_that_pays),
     };
     return cmocka_run_group_tests_name("product", tests, NULL, NULL);

@@ -28,7 +28,7 @@ static void plant(wood *w)
             w->total += w->all[group * TILE_GROUP + i];
     }
     w->sums[TILE_GROUPS] = w->total;
-    w->tree = (tile_tree){w->sums, w->all, w->list_starts};
+    w->tree = (tile_tree){.sums = w->sums, .weights = w->all, .list_starts = w->list_starts};
 }
 
 /* Most weights are small; some tiles, and whole groups, have none; one has a third of all. */

@@ -431,7 +431,10 @@ static void expect_same(stage *s, double tolerance, const char *what)
     render_both(s, &cpu, &vulkan);
     const difference d = compare_pictures(s, tolerance);
     compare_layers(s);
-    if (d.off > 0 || vulkan.samples != cpu.samples || vulkan.passes != cpu.passes)
+    const bool weighs_tiles =
+        s->cpu->pools->parts.surface == STRATEGY_SURFACE_BRDF && s->cpu->pools->bins != NULL && !s->cpu->pools->is_even;
+    const double beside = weighs_tiles ? PIXELS_BESIDE * d.count : 0;
+    if (d.off > beside || d.mean > 1e-4 || vulkan.samples != cpu.samples || vulkan.passes != cpu.passes)
         fail_msg("%s: %u pixels differ, the worst by %g; %u passes in place of %u", what, d.off, d.worst, vulkan.passes,
                  cpu.passes);
 }

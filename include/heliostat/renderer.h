@@ -81,7 +81,7 @@ typedef struct helio_frame_info {
     double flux[6];          /* of the environment's faces, by the tables: see helio_environment_info */
     uint32_t passes;         /* how often the pools were redrawn */
     uint64_t samples;        /* light + BRDF samples taken */
-    uint64_t samples_useful; /* above the horizon, with light, with a BRDF > 0 */
+    uint64_t samples_useful; /* above the horizon, with a contribution > 0 */
     uint64_t rays;           /* shadow rays */
     uint64_t camera_rays;    /* traced; 0 where those of the previous frame still hold */
     uint64_t points;         /* shading points: camera samples that hit something */

@@ -181,6 +181,10 @@ typedef struct helio_estimate_desc {
     bool no_control;  /* leave out the control variate, see helio_counts */
     helio_visibility visibility; /* default: nothing is in the way */
     void *user;                  /* handed to visibility */
+    /* For helio_gather() and helio_count(), without effect beside a visibility function: nobody will look for what is
+     * in the way of the samples. They are then those of helio_estimate(), which leave out light that is known, and
+     * control has it. */
+    bool is_free;
 } helio_estimate_desc;
 
 /* Expected counts m and realised counts of the techniques that share N_s: faces 0..5 (FACE), or the whole map (LIGHT)
@@ -196,7 +200,10 @@ typedef struct helio_counts {
      * bin, or of the colours of the tiles that a shiny point weighs, less what the point's samples say of it, and so 0
      * on average; half of that where desc has a visibility function. The estimate is the sum of the visible
      * contributions and this. May be negative; 0 where there is none. Hosts that trace the samples themselves may take
-     * any part of it, and half is good. */
+     * any part of it, and half is good.
+     *
+     * Where desc says is_free all of it must be taken: there it holds diffuse light of shiny points as well, that of
+     * tiles well above the horizon, which the samples leave out. */
     float control[3];
 } helio_counts;
 
@@ -204,7 +211,8 @@ typedef struct helio_counts {
  * helio_counts.control. */
 typedef struct helio_sample {
     float direction[3];    /* world space */
-    float contribution[3]; /* radiance x BRDF x cosine / sum_k m_k pdf_k: the balance heuristic, already divided */
+    float contribution[3]; /* radiance x BRDF x cosine / sum_k m_k pdf_k: the balance heuristic, already divided; where
+                              desc says is_free without known light, and then it may be below 0 */
     float density;         /* sum_k m_k pdf_k, 1/sr: the samples' total density at this direction */
     uint32_t technique;    /* entry of helio_counts that drew it */
     uint32_t number;       /* of a light technique: in its pool; else 0 */
@@ -223,7 +231,7 @@ HELIO_API helio_status helio_gather(const helio_pools *pools, const helio_shadin
 
 typedef struct helio_estimate_info {
     uint32_t samples; /* taken */
-    uint32_t useful;  /* of them, those above the horizon with light and a BRDF > 0 */
+    uint32_t useful;  /* of them, those above the horizon, with a contribution > 0 */
     uint32_t rays;    /* visibility tests */
 } helio_estimate_info;
 

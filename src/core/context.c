@@ -12,7 +12,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-enum { MAX_THREADS = 1024, HUGE_PAGE = 1 << 21 };
+enum { MAX_THREADS = 1024, HUGE_PAGE = 1 << 21, HUGE_FROM = HUGE_PAGE / 2 /* no more than twice what is asked */ };
 
 struct helio_context {
     helio_context_desc desc; /* with defaults resolved */
@@ -35,7 +35,7 @@ static void *allocate_huge(size_t bytes)
 static void *default_allocate(void *user, size_t bytes, size_t alignment)
 {
     (void)user;
-    if (bytes >= 2 * HUGE_PAGE && alignment <= HUGE_PAGE)
+    if (bytes >= HUGE_FROM && alignment <= HUGE_PAGE)
         return allocate_huge(bytes);
     return aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
 }

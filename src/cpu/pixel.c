@@ -67,6 +67,7 @@ helio_status helio_renderer_pixel(helio_renderer *renderer, const helio_frame_de
     primary_positions(&frame, y, row.x0, count, position_x, position_y);
     primary_directions(&frame, count, position_x, position_y, direction_x, direction_y, direction_z);
     *pixel = (helio_pixel_step){.hit = (helio_hit)renderer->hits.kinds[index], .estimate = frame.estimate};
+    pixel->estimate.is_free = pixel->estimate.visibility == NULL; /* as in the picture */
     if (pixel->hit != HELIO_HIT_NOTHING)
         shade_point(&frame, index, (vec3){direction_x[i], direction_y[i], direction_z[i]}, &pixel->point);
     return HELIO_OK;

@@ -2,7 +2,7 @@
  *
  * The estimator: multi-sample MIS with the balance heuristic over the light techniques (a pool per face, or one of the
  * map or of a bin of normals) and the surface technique (BRDF or cosine). Every sample contributes L rho cos / sum_k
- * m_k pdf_k, with the expected counts m_k. */
+ * m_k pdf_k, with the expected counts m_k; rho without the diffuse lobe where its light is known. */
 #include "sampling/estimate.h"
 
 #include "core/context.h"
@@ -50,16 +50,11 @@ helio_status estimate_resolve(const helio_pools *pools, const helio_estimate_des
 
 /* ---- points side by side ---- */
 
-/* Pools of bins hold the product of light and cosine, and tiles that of light and BRDF, so that BRDF samples have only
- * the specular lobe to look after, the more the narrower it is. How many they are begin_tiles() finds; here it matters
- * whether there are any. */
-static float specular_need(const tiles *t, const helio_shading_point *point)
+/* Whether there is a specular lobe. */
+static bool shines(const helio_material *material)
 {
-    if (point->material.kind == HELIO_MATERIAL_DIFFUSE)
-        return 0.0f;
-    vec3 normal = vec3_from(point->normal), view = brdf_lift_view(normal, vec3_from(point->view));
-    brdf surface = brdf_prepare(&point->material, normal, view);
-    return tile_lobe_need(t, &surface);
+    return material->kind == HELIO_MATERIAL_GGX ||
+           (material->kind == HELIO_MATERIAL_PHONG && luminance(material->specular) > 0.0f);
 }
 
 /* need is what is best at an even split; any other moves the odds. */
@@ -69,16 +64,16 @@ static float share_of_need(float need, float even)
     return for_surface > 0.0f ? for_surface / (for_surface + for_light) : 0.0f;
 }
 
-/* Part of a point's samples that the surface technique takes. */
+/* Part of a point's samples that the surface technique takes. Pools of bins hold the product of light and cosine, and
+ * tiles that of light and BRDF, so that BRDF samples have only the specular lobe to look after, the more the narrower
+ * it is. How many they are begin_tiles() finds; here it matters whether there are any. */
 static float surface_share(const helio_pools *pools, const helio_shading_point *point, const helio_estimate_desc *desc)
 {
     if (pools->techniques == 0 || pools->is_even)
         return 1.0f;
     if (pools->parts.surface == STRATEGY_SURFACE_NONE)
         return 0.0f;
-    if (pools->bins == NULL)
-        return desc->brdf_share;
-    return share_of_need(specular_need(pools->bins->tiles, point), desc->brdf_share);
+    return pools->bins == NULL || shines(&point->material) ? desc->brdf_share : 0.0f;
 }
 
 /* Counts and windows of the points, and their directions in the map's space. */
@@ -146,9 +141,10 @@ static void begin_tiles(gathering *g, const helio_estimate_desc *desc, uint32_t 
     tile_lobe lobe;
     brdf_prepare_share(&surface);
     tile_lobe_prepare(&lobe, t, &surface);
+    g->knows_diffuse &= lobe.diffuse > 0.0f;
+    lobe.knows_diffuse = g->knows_diffuse;
+    lobe.geometric_normal = g->geometric_normal;
     kernels->weigh_point(t, &lobe, &g->tiles);
-    if (!desc->no_control)
-        kernels->mix_hues(t, &g->tiles);
     g->tile_seed = hash_combine(seed, STREAM_WINDOW);
     g->counts = (helio_counts){0};
     if (g->tiles.total == 0) /* as for a bin that is lit, but only below the horizon of this normal */
@@ -161,9 +157,10 @@ static void begin_tiles(gathering *g, const helio_estimate_desc *desc, uint32_t 
     g->counts.realised[TECHNIQUE_SURFACE] = desc->samples - g->counts.realised[0];
 }
 
-/* For point i of a block that is prepared. */
+/* For point i of a block that is prepared. is_free: nothing is in the way of its samples, so that they need not show
+ * what is known. */
 static void begin(gathering *g, const helio_pools *pools, const helio_shading_point *point,
-                  const helio_estimate_desc *desc, const point_block *block, uint32_t i)
+                  const helio_estimate_desc *desc, const point_block *block, uint32_t i, bool is_free)
 {
     g->pools = pools;
     g->environment = pools->tables->environment;
@@ -177,6 +174,7 @@ static void begin(gathering *g, const helio_pools *pools, const helio_shading_po
         g->windows[k] = block->windows[k][i];
     g->pool = block->pools[0][i];
     g->has_tiles = pools->bins != NULL && !pools->is_even && block->surface_share[i] > 0.0f;
+    g->knows_diffuse = g->has_tiles && is_free && !desc->no_control;
     if (g->has_tiles)
         begin_tiles(g, desc, point->seed, block->rounding[i]);
     if (g->counts.expected[TECHNIQUE_SURFACE] > 0.0f)
@@ -201,41 +199,62 @@ static uint32_t take_some(const gathering *g, uint32_t room, sample_cursor *curs
     return count;
 }
 
-/* The next samples of the light techniques, as many as fit. */
-static void take_light(const gathering *g, const kernel_set *kernels, sample_cursor *cursor, sample_block *block)
+/* Which samples of which techniques come next, as many as fit in a block. */
+typedef struct block_plan {
+    pool_piece pieces[CUBE_FACES]; /* of pools */
+    uint32_t piece_count;
+    struct own_samples {
+        uint32_t first, count;
+    } tiles, surface; /* of those that the point draws itself */
+} block_plan;
+
+static void plan_block(const gathering *g, sample_cursor *cursor, block_plan *plan)
 {
-    pool_piece pieces[CUBE_FACES];
-    uint32_t piece_count = 0, room = BLOCK_SAMPLES;
-    while (cursor->technique < TECHNIQUE_SURFACE && room > 0) {
-        uint32_t technique = cursor->technique, first = cursor->taken, count = take_some(g, room, cursor);
+    uint32_t room = BLOCK_SAMPLES;
+    *plan = (block_plan){0};
+    while (cursor->technique < TECHNIQUES && room > 0) {
+        const uint32_t technique = cursor->technique, first = cursor->taken, count = take_some(g, room, cursor);
         room -= count;
-        if (count > 0 && g->has_tiles)
-            kernels->take_tiles(g, first, count, block);
-        else if (count > 0)
-            pieces[piece_count++] = (pool_piece){technique, g->windows[technique] + first, count};
+        if (count == 0)
+            continue;
+        if (technique == TECHNIQUE_SURFACE)
+            plan->surface = (struct own_samples){first, count};
+        else if (g->has_tiles)
+            plan->tiles = (struct own_samples){first, count};
+        else
+            plan->pieces[plan->piece_count++] = (pool_piece){technique, g->windows[technique] + first, count};
     }
-    kernels->take_pools(g, pieces, piece_count, block);
 }
 
 static void empty_block(sample_block *block)
 {
-    block->count = 0;
+    block->count = block->draw_count = 0;
     memset(block->hue, 0, sizeof block->hue);
 }
 
-/* The next samples, as many as fit, and what each contributes; false if there are none left. */
-static bool next_block(const gathering *g, const kernel_set *kernels, sample_cursor *cursor, sample_block *block)
+/* Chooses the next samples, as many as fit, and sends for what is far away in memory. False if there are none left. */
+static bool choose_block(gathering *g, const kernel_set *kernels, sample_cursor *cursor, block_plan *plan,
+                         sample_block *block)
 {
+    plan_block(g, cursor, plan);
     empty_block(block);
-    take_light(g, kernels, cursor, block);
-    if (cursor->technique == TECHNIQUE_SURFACE && block->count < BLOCK_SAMPLES) {
-        uint32_t first = cursor->taken, count = take_some(g, BLOCK_SAMPLES - block->count, cursor);
-        if (count > 0)
-            kernels->draw_surface(g, first, count, block);
-    }
-    if (block->count > 0)
-        kernels->weigh(g, block);
-    return block->count > 0;
+    if (plan->tiles.count > 0)
+        kernels->choose_tiles(g, plan->tiles.first, plan->tiles.count, block);
+    if (plan->surface.count > 0)
+        kernels->aim_surface(g, plan->surface.first, plan->surface.count, block);
+    return plan->tiles.count + plan->surface.count + plan->piece_count > 0;
+}
+
+/* Takes them, and finds what each contributes. */
+static void take_block(gathering *g, const kernel_set *kernels, const block_plan *plan, sample_block *block)
+{
+    if (plan->tiles.count > 0)
+        kernels->take_tiles(g, block);
+    if (plan->piece_count > 0)
+        kernels->take_pools(g, plan->pieces, plan->piece_count, block);
+    if (plan->surface.count > 0)
+        kernels->take_surface(g, block);
+    kernels->weigh(g, block);
 }
 
 static vec3 block_direction(const gathering *g, const sample_block *block, uint32_t i)
@@ -307,13 +326,70 @@ static void control_hue(const gathering *g, const helio_estimate_desc *desc, con
         control[c] = control_finite(factor * colour[c] * (g->tiles.hue[c] - hues[c] / samples));
 }
 
-static void estimate_by_blocks(const gathering *g, const kernel_set *kernels, const helio_shading_point *point,
-                               const helio_estimate_desc *desc, estimate_result *result)
+/* ... and its diffuse light from where that is known, which its samples leave out. hues: as above. */
+static void control_tiles(const gathering *g, const helio_estimate_desc *desc, const float hues[3], float control[3])
 {
+    control_hue(g, desc, hues, control);
+    if (!g->knows_diffuse)
+        return;
+    const vec3 sum = g->surface.colours[0];
+    const float colour[3] = {sum.x, sum.y, sum.z};
+    for (int c = 0; c < 3; c++)
+        control[c] += colour[c] * g->tiles.irradiance[c] * g->environment->intensity;
+}
+
+static bool reads_pools_alone(const point_block *block, uint32_t i)
+{
+    return block->surface_share[i] == 0.0f;
+}
+
+/* Points whose samples are taken block by block, one after the other; the next is begun while the samples of the one
+ * whose turn it is are on their way from memory. */
+typedef struct point_queue {
+    const helio_pools *pools;
+    const kernel_set *kernels;
+    const helio_shading_point *points;
+    const helio_estimate_desc *desc;
+    const point_block *block;
+    uint32_t current, next; /* the latter is block->count if no other follows */
+    bool has_begun;         /* the next */
+    uint32_t turn;          /* which of these is of the current point; the other is of the next */
+    gathering gatherings[2];
+} point_queue;
+
+static void begin_next(point_queue *queue)
+{
+    const bool is_free = queue->desc->visibility == NULL;
+    if (queue->has_begun)
+        return;
+    queue->has_begun = true;
+    while (queue->next < queue->block->count && is_free && reads_pools_alone(queue->block, queue->next))
+        queue->next++;
+    if (queue->next < queue->block->count)
+        begin(&queue->gatherings[1 - queue->turn], queue->pools, &queue->points[queue->next], queue->desc, queue->block,
+              queue->next, is_free);
+}
+
+static void step_on(point_queue *queue)
+{
+    queue->current = queue->next++;
+    queue->turn = 1 - queue->turn;
+    queue->has_begun = false;
+}
+
+static void estimate_by_blocks(point_queue *queue, estimate_result *result)
+{
+    gathering *g = &queue->gatherings[queue->turn];
+    const kernel_set *kernels = queue->kernels;
+    const helio_shading_point *point = &queue->points[queue->current];
+    const helio_estimate_desc *desc = queue->desc;
     sample_block block;
+    block_plan plan;
     float hues[3] = {0};
     *result = (estimate_result){0};
-    for (sample_cursor cursor = {0}; next_block(g, kernels, &cursor, &block);) {
+    for (sample_cursor cursor = {0}; choose_block(g, kernels, &cursor, &plan, &block);) {
+        begin_next(queue);
+        take_block(g, kernels, &plan, &block);
         block_sum sum = kernels->sum_block(&block);
         result->info.samples += block.count;
         result->info.useful += sum.useful;
@@ -325,13 +401,9 @@ static void estimate_by_blocks(const gathering *g, const kernel_set *kernels, co
         }
         add_to(result->visible, sum.rgb);
     }
+    begin_next(queue); /* after a point without samples */
     if (g->has_tiles)
-        control_hue(g, desc, hues, result->control);
-}
-
-static bool reads_pools_alone(const point_block *block, uint32_t i)
-{
-    return block->surface_share[i] == 0.0f;
+        control_tiles(g, desc, hues, result->control);
 }
 
 static bool has_points_of_pools(const point_block *block)
@@ -391,16 +463,21 @@ void estimate_points(const helio_pools *pools, uint32_t count, const helio_shadi
                      const helio_estimate_desc *desc, estimate_result *results)
 {
     point_block block;
-    gathering g;
     prepare_points(pools, count, points, desc, &block);
     if (desc->visibility == NULL && has_points_of_pools(&block))
         estimate_from_pools(pools, desc->samples, points, &block, results);
-    const kernel_set *kernels = kernels_of(context_isa(pools->tables->environment->context));
-    for (uint32_t i = 0; i < count; i++) {
-        if (desc->visibility == NULL && reads_pools_alone(&block, i))
-            continue;
-        begin(&g, pools, &points[i], desc, &block, i);
-        estimate_by_blocks(&g, kernels, &points[i], desc, &results[i]);
+    point_queue queue;
+    queue.pools = pools;
+    queue.kernels = kernels_of(context_isa(pools->tables->environment->context));
+    queue.points = points;
+    queue.desc = desc;
+    queue.block = &block;
+    queue.next = queue.turn = 0;
+    queue.has_begun = false;
+    begin_next(&queue);
+    while (queue.next < count) {
+        step_on(&queue);
+        estimate_by_blocks(&queue, &results[queue.current]);
     }
     for (uint32_t i = 0; i < count; i++)
         find_control(pools, &points[i], desc, &block, i, results[i].control);
@@ -492,7 +569,7 @@ helio_status helio_estimate_points(const helio_pools *pools, uint32_t count, con
 }
 
 /* For one that weighs tiles. */
-static void find_hue_control(const gathering *g, const helio_estimate_desc *desc, float control[3])
+static void find_tile_control(gathering *g, const helio_estimate_desc *desc, float control[3])
 {
     const kernel_set *kernels = kernels_of(context_isa(g->environment->context));
     float hues[3] = {0};
@@ -500,10 +577,11 @@ static void find_hue_control(const gathering *g, const helio_estimate_desc *desc
     for (uint32_t first = 0; first < g->counts.realised[0]; first += BLOCK_SAMPLES) {
         const uint32_t rest = g->counts.realised[0] - first;
         empty_block(&block);
-        kernels->take_tiles(g, first, rest < BLOCK_SAMPLES ? rest : BLOCK_SAMPLES, &block);
+        kernels->choose_tiles(g, first, rest < BLOCK_SAMPLES ? rest : BLOCK_SAMPLES, &block);
+        kernels->take_tiles(g, &block);
         add_to(hues, block.hue);
     }
-    control_hue(g, desc, hues, control);
+    control_tiles(g, desc, hues, control);
 }
 
 /* control: NULL where nobody wants it, as that of a point that weighs tiles takes its samples once more. */
@@ -518,13 +596,13 @@ static helio_status begin_checked(const helio_pools *pools, const helio_shading_
         return fail(HELIO_ERR_ARGUMENT, "an estimate needs a shading point");
     HELIO_TRY(resolve_points(1, given_point, &point));
     prepare_points(pools, 1, &point, &desc, &block);
-    begin(g, pools, &point, &desc, &block, 0);
+    begin(g, pools, &point, &desc, &block, 0, desc.visibility == NULL && desc.is_free);
     if (control == NULL)
         return HELIO_OK;
     memset(control, 0, 3 * sizeof *control);
     find_control(pools, &point, &desc, &block, 0, control);
     if (g->has_tiles)
-        find_hue_control(g, &desc, control);
+        find_tile_control(g, &desc, control);
     return HELIO_OK;
 }
 
@@ -566,7 +644,7 @@ static uint32_t number_of(const gathering *g, const sample_block *block, uint32_
 {
     if (technique == TECHNIQUE_SURFACE)
         return 0;
-    return g->has_tiles ? block->listed[i] : first_of(g, technique) + taken;
+    return g->has_tiles ? block->draws[i].element : first_of(g, technique) + taken;
 }
 
 static void write_sample(const gathering *g, const sample_block *block, uint32_t i, uint32_t technique, uint32_t taken,
@@ -591,7 +669,9 @@ helio_status helio_gather(const helio_pools *pools, const helio_shading_point *p
         return fail(HELIO_ERR_ARGUMENT, "helio_gather needs places for samples and their count");
     HELIO_TRY(begin_checked(pools, point, desc, &g, NULL));
     const kernel_set *kernels = kernels_of(context_isa(g.environment->context));
-    for (sample_cursor cursor = {0}; next_block(&g, kernels, &cursor, &block);)
+    block_plan plan;
+    for (sample_cursor cursor = {0}; choose_block(&g, kernels, &cursor, &plan, &block);) {
+        take_block(&g, kernels, &plan, &block);
         for (uint32_t i = 0; i < block.count; i++, taken++) {
             while (taken == end) {
                 start = end;
@@ -599,6 +679,7 @@ helio_status helio_gather(const helio_pools *pools, const helio_shading_point *p
             }
             write_sample(&g, &block, i, technique - 1, taken - start, &samples[taken]);
         }
+    }
     *count = taken;
     return HELIO_OK;
 }

@@ -5,16 +5,17 @@
 #ifndef HELIOSTAT_SRC_FIXED_POINT_H
 #define HELIOSTAT_SRC_FIXED_POINT_H
 
-#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
 /* The exponent e for which the largest weight x 2^e is below 2^bits, and nearly reaches it. At most 126, so that 2^e is
- * a normal float and a weight that a machine might flush to zero comes out as 0 or 1 in either case. */
+ * a normal float and a weight that a machine might flush to zero comes out as 0 or 1 in either case. The largest is 0
+ * or more; that it might be subnormal makes no difference by then. */
 static inline int fixed_point_exponent(float largest, int bits)
 {
-    int exponent = 0;
-    frexpf(largest, &exponent);
+    int32_t pattern;
+    memcpy(&pattern, &largest, sizeof pattern);
+    const int exponent = pattern != 0 ? (pattern >> 23) - 126 : 0;
     return bits - exponent < 126 ? bits - exponent : 126;
 }
 

@@ -34,32 +34,32 @@ typedef struct gathering {
     /* Points that shine and whose pools are of bins read no pool: technique 0 then draws from the tiles as the point
      * itself weighs them. */
     bool has_tiles;
+    bool knows_diffuse; /* part of the diffuse light of such a point is known, and left out of its samples */
     uint32_t tile_seed;
     point_tiles tiles;
 } gathering;
-
-/* face_place_density()'s unit for the density with which the light techniques draw a direction, each weighted with its
- * expected count. */
-static inline float gathering_unit_density(const gathering *g, const face_place *at)
-{
-    const float expected = g->expected_in_face[at->face];
-    if (!(expected > 0.0f))
-        return 0.0f;
-    if (!g->has_tiles)
-        return expected * pools_unit_density(g->pools, g->pool, at);
-    const tiles *t = g->pools->bins->tiles;
-    const uint32_t position = tiles_position(t, at->face, at->row, at->column);
-    return expected * (point_tiles_probability(&g->tiles, position) * tiles_unit_density(t, at));
-}
 
 /* Samples first ... first + count - 1, in the arrays of all pools, that a technique takes. */
 typedef struct pool_piece {
     uint32_t technique, first, count;
 } pool_piece;
 
+/* Surface samples that wait for the texels that they meet. [count] each. */
+typedef struct surface_aim {
+    uint32_t count;
+    float x[BLOCK_SAMPLES], y[BLOCK_SAMPLES], z[BLOCK_SAMPLES];
+    uint32_t face[BLOCK_SAMPLES], row[BLOCK_SAMPLES], column[BLOCK_SAMPLES];
+    uint32_t index[BLOCK_SAMPLES];    /* of all texels */
+    uint32_t mirrored[BLOCK_SAMPLES]; /* of the solid angle, see texel_weight.h */
+    float u[BLOCK_SAMPLES], v[BLOCK_SAMPLES];
+} surface_aim;
+
 /* Samples side by side, whatever technique took them, and what each contributes. */
 typedef struct sample_block {
     uint32_t count;
+    uint32_t draw_count;
+    tile_draw draws[BLOCK_SAMPLES]; /* [draw_count]: of samples of tiles, which come first */
+    surface_aim aim;
     /* As in the pools, but with sum_k m_k pdf_k over the light techniques, 1/sr, as density. */
     alignas(64) float samples[SAMPLE_ARRAYS][BLOCK_STRIDE];
     /* Radiance x BRDF x cosine / density, 0 below a horizon. [BLOCK_STRIDE], 0 from count on to the end of a register.
@@ -67,9 +67,9 @@ typedef struct sample_block {
     alignas(64) float red[BLOCK_STRIDE];
     alignas(64) float green[BLOCK_STRIDE];
     alignas(64) float blue[BLOCK_STRIDE];
+    alignas(64) float known[BLOCK_STRIDE];   /* of points that know diffuse light: part of it that is known there */
     alignas(64) float density[BLOCK_STRIDE]; /* sum_k m_k pdf_k over all techniques, 1/sr */
     float hue[3];                            /* of samples of tiles: sums of listed_sample.hue */
-    uint32_t listed[BLOCK_SAMPLES];          /* of samples of tiles: which of the lists' */
 } sample_block;
 
 /* Sum of a block. */

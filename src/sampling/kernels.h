@@ -55,11 +55,11 @@ typedef struct kernel_set {
     /* The known light of a bin of normals, from that of the tiles. */
     void (*know_bin)(const tiles *t, const normal_bin *bin, struct control_matrix *known);
 
-    /* The mean hue of the light of the tiles as a point weighs them. */
-    void (*mix_hues)(const tiles *t, point_tiles *p);
-
-    /* Weighs the tiles for one point. The same bits with every instruction set. */
+    /* Weighs groups of tiles for one point. But for hues and irradiance, the same bits with every instruction set. */
     void (*weigh_point)(const tiles *t, const tile_lobe *lobe, point_tiles *p);
+
+    /* Sees to it that the probabilities of a group's tiles can be read. The same bits with every instruction set. */
+    void (*know_tiles)(point_tiles *p, uint32_t group);
 
     /* Draws samples first ... first + count - 1 of the pool of a face or the map that is not black. seed: of the pool.
      * The same bits with every instruction set. */
@@ -84,14 +84,17 @@ typedef struct kernel_set {
     void (*sum_light)(const helio_pools *pools, uint32_t samples, const point_block *block, const brdf *surfaces,
                       block_sum *sums);
 
-    /* Adds samples to a block, which must have room: pieces of pools, or samples first ... first + count - 1 of the
-     * surface technique, drawn now, with the light in their directions. The same bits with every instruction set. */
-    void (*take_pools)(const gathering *g, const pool_piece *pieces, uint32_t piece_count, sample_block *block);
-    void (*draw_surface)(const gathering *g, uint32_t first, uint32_t count, sample_block *block);
+    /* Choose samples first ... first + count - 1, of those that a point draws from the tiles as it weighs them itself
+     * and of those of the surface technique, and send for what is to be read of them, which takes its time: neither is
+     * in a block yet. The same bits with every instruction set, as with those that follow. */
+    void (*choose_tiles)(gathering *g, uint32_t first, uint32_t count, sample_block *block);
+    void (*aim_surface)(const gathering *g, uint32_t first, uint32_t count, sample_block *block);
 
-    /* Likewise samples first ... first + count - 1 of those that a point draws from the tiles as it weighs them itself.
-     */
-    void (*take_tiles)(const gathering *g, uint32_t first, uint32_t count, sample_block *block);
+    /* Add samples to a block, which must have room: those that have been chosen, the tiles' first of all and the
+     * surface's last of all, and pieces of pools. */
+    void (*take_tiles)(const gathering *g, sample_block *block);
+    void (*take_pools)(const gathering *g, const pool_piece *pieces, uint32_t piece_count, sample_block *block);
+    void (*take_surface)(gathering *g, sample_block *block);
 
     /* What the samples of a block contribute, and the sum. */
     void (*weigh)(const gathering *g, sample_block *block);
@@ -138,8 +141,8 @@ void KERNEL(add_texels)(const struct texel_rows *texels, const float *rgb, size_
 struct colour_sums KERNEL(sum_columns)(const struct column_colours *columns, const float *u, uint32_t first,
                                        uint32_t end);
 void KERNEL(know_bin)(const tiles *t, const normal_bin *bin, struct control_matrix *known);
-void KERNEL(mix_hues)(const tiles *t, point_tiles *p);
 void KERNEL(weigh_point)(const tiles *t, const tile_lobe *lobe, point_tiles *p);
+void KERNEL(know_tiles)(point_tiles *p, uint32_t group);
 void KERNEL(draw_pool)(helio_pools *pools, uint32_t pool, uint32_t first, uint32_t count, uint32_t seed);
 void KERNEL(draw_tiles)(normal_bins *bins, const helio_tables *tables, uint32_t first, uint32_t end, uint32_t seed);
 void KERNEL(draw_bin)(helio_pools *pools, uint32_t bin, uint32_t seed);
@@ -147,9 +150,11 @@ void KERNEL(prepare_points)(const helio_pools *pools, const helio_estimate_desc 
 void KERNEL(round_counts)(uint32_t samples, point_block *block);
 void KERNEL(sum_light)(const helio_pools *pools, uint32_t samples, const point_block *block, const brdf *surfaces,
                        block_sum *sums);
+void KERNEL(choose_tiles)(gathering *g, uint32_t first, uint32_t count, sample_block *block);
+void KERNEL(aim_surface)(const gathering *g, uint32_t first, uint32_t count, sample_block *block);
+void KERNEL(take_tiles)(const gathering *g, sample_block *block);
 void KERNEL(take_pools)(const gathering *g, const pool_piece *pieces, uint32_t piece_count, sample_block *block);
-void KERNEL(draw_surface)(const gathering *g, uint32_t first, uint32_t count, sample_block *block);
-void KERNEL(take_tiles)(const gathering *g, uint32_t first, uint32_t count, sample_block *block);
+void KERNEL(take_surface)(gathering *g, sample_block *block);
 void KERNEL(weigh)(const gathering *g, sample_block *block);
 block_sum KERNEL(sum_block)(const sample_block *block);
 uint32_t KERNEL(fill_background)(const struct background *b, uint32_t count, const float *x, const float *y,

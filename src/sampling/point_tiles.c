@@ -40,9 +40,14 @@ static void prepare_ggx(tile_lobe *lobe, const tiles *t, const brdf *b)
 
 void tile_lobe_prepare(tile_lobe *lobe, const tiles *t, const brdf *b)
 {
-    *lobe = (tile_lobe){.kind = b->kind, .normal = b->normal, .edge = t->edge, .view_cosine = b->view_cosine};
+    *lobe = (tile_lobe){.kind = b->kind,
+                        .normal = b->normal,
+                        .edge = t->edge,
+                        .view_cosine = b->view_cosine,
+                        .geometric_normal = b->normal};
     lobe->slope = 0.25f / t->edge;
     lobe->to_surface = EVEN_WIDTH / lobe_width(b);
+    lobe->least_part = (1.0f + (POINT_REFINED_TIMES - 1) * tile_lobe_need(t, b)) / POINT_REFINED_PARTS;
     lobe->diffuse = vec3_luminance(b->colours[0]);
     lobe->specular = vec3_luminance(b->colours[1]);
     if (b->kind == HELIO_MATERIAL_PHONG)

@@ -25,20 +25,36 @@ typedef struct tile_lobe {
     float to_surface; /* BRDF samples look after x / (1 + x) of the specular light of a tile, x this times its spread */
     float alpha;      /* GGX, as it is: for the masking */
     float view_cosine;
+    float least_part;   /* a group of which the specular lobe has more than this part of all light has its tiles weighed
+                           by themselves; others share the lobe at its middle */
+    bool knows_diffuse; /* leaves the diffuse lobe out for groups that are wholly above the horizons of both normals, */
+    vec3 geometric_normal; /* as their diffuse light is known */
 } tile_lobe;
 
-/* A group of tiles of which the specular lobe has more than one of so many parts of all light has its tiles weighed by
- * themselves; others share the lobe at its middle. */
-enum { POINT_REFINED_PARTS = 256 };
+/* tile_lobe.least_part is one of so many for a lobe that BRDF samples do not help, and so many times that for one that
+ * they have alone. */
+enum { POINT_REFINED_PARTS = 256, POINT_REFINED_TIMES = 6 };
 
+/* First groups are chosen, each by the sum of its tiles' weights, then one of its tiles. Of most groups nobody ever
+ * asks for the tiles, and so they are weighed when somebody does. */
 typedef struct point_tiles {
-    uint32_t total;   /* of all weights; 0 if no light is above the horizon */
-    float share;      /* 1 / total, or 0 */
-    float brightness; /* of the light, by tiles.light: what the point is thought to get from light samples */
-    float hue[3];     /* mean over the tiles, each with its probability */
-    float left;       /* part of the light that is left to BRDF samples, 0 ... 1 */
-    uint32_t sums[TILE_GROUPS + 1];           /* prefix sums over groups */
-    alignas(64) uint32_t weights[TILES_MOST]; /* below 2^31 together */
+    uint32_t total;      /* of the weights of all groups; 0 if no light is above the horizon */
+    float share;         /* 1 / total, or 0 */
+    float brightness;    /* of the light, by tiles.light: what the point is thought to get from light samples */
+    float hue[3];        /* mean over the tiles, each with its probability */
+    float irradiance[3]; /* of groups whose diffuse light is known, if the lobe leaves it out, in units of radiance */
+    alignas(64) float knows_diffuse[TILE_GROUPS]; /* 1 for these, else 0 */
+    float left;                                   /* part of the light that is left to BRDF samples, 0 ... 1 */
+    uint32_t sums[TILE_GROUPS + 1];               /* prefix sums over groups, below 2^31 */
+    bool is_known[TILE_GROUPS];               /* whether the kernel know_tiles() was asked for the tiles of a group */
+    alignas(64) uint32_t weights[TILES_MOST]; /* of tiles of such groups; they sum to their group's */
+    /* What the tiles of a group follow from. */
+    const tiles *tiles;
+    vec3 normal;
+    alignas(64) float value[TILE_GROUPS];    /* the BRDF that BRDF samples leave, 1/sr */
+    alignas(64) float weight[TILE_GROUPS];   /* light x BRDF x cosine; 0 if wholly below the horizon */
+    uint8_t is_shared[TILE_GROUPS];          /* all tiles have that BRDF, and are above the horizon; others have been */
+    alignas(64) float looked_at[TILES_MOST]; /* looked at: light x BRDF x cosine, also of known groups */
 } point_tiles;
 
 /* Part of a point's samples that are best drawn from the specular lobe where light is even, at an even split: nearly
@@ -52,10 +68,10 @@ static inline float point_tiles_need(const point_tiles *p, float need_of_lobe)
     return sqrtf(p->left * need_of_lobe);
 }
 
-/* b: with brdf_prepare_share() done for the material's own share. */
+/* b: with brdf_prepare_share() done for the material's own share. Nothing is known of diffuse light. */
 void tile_lobe_prepare(tile_lobe *lobe, const tiles *t, const brdf *b);
 
-/* Probability of a tile. Drawing and MIS both use this. */
+/* Probability of a tile, the group of which is known. Drawing and MIS both use this. */
 static inline float point_tiles_probability(const point_tiles *p, uint32_t position)
 {
     return (float)p->weights[position] * p->share;

@@ -40,24 +40,27 @@ static inline __attribute__((always_inline)) float specular_at(helio_material_ki
 
 /* ---- groups ---- */
 
-/* What a point thinks of a group of tiles, by the mean direction of its light. */
+/* What a point thinks of a group of tiles, by the mean direction of its light, and what of the tiles that it has looked
+ * at is the same for all groups. */
 typedef struct group_lobes {
-    alignas(64) int32_t is_taken[TILE_GROUPS];    /* not black, nor wholly below the horizon */
-    alignas(64) float specular[TILE_GROUPS];      /* the specular lobe that BRDF samples leave, 1/sr */
-    alignas(64) float gain[TILE_GROUPS];          /* light of all in relation to the light that they leave */
-    alignas(64) float weight[TILE_GROUPS];        /* light x BRDF x cosine */
-    alignas(64) float specular_part[TILE_GROUPS]; /* of that, the specular lobe's */
-    alignas(64) float wholes[TILE_GROUP]; /* of tiles that are weighed by themselves: sums, over all such groups, of
-                                             their weights if BRDF samples left nothing out */
+    alignas(64) float specular_part[TILE_GROUPS]; /* light x cosine x specular lobe, as BRDF samples leave it */
+    alignas(64) float taken[TILE_GROUPS];         /* ... what they take of that */
+    alignas(64) int32_t is_low[TILE_GROUPS];      /* of some tile the centre may be below the horizon */
+    /* Sums over the tiles that are looked at: the same of those with a lobe of their own; weight x hue. */
+    alignas(64) float tiles_taken[TILE_GROUP];
+    alignas(64) float hues[3][TILE_GROUP];
 } group_lobes;
 
 /* All groups, as there are no more than a few registers of them. The light of a group is as wide as the directions of
- * its tiles vary, and so is a lobe that stands for all of it. */
+ * its tiles vary, and so is a lobe that stands for all of it. Where all tiles are above the horizon the weight is the
+ * sum of theirs, if they share the lobe. */
 static inline __attribute__((always_inline)) void look_at_groups(helio_material_kind kind, const tiles *t,
-                                                                 const tile_lobe *given, group_lobes *restrict groups)
+                                                                 const tile_lobe *given, group_lobes *restrict groups,
+                                                                 point_tiles *restrict p)
 {
     const tile_lobe lobe = *given;
-    const vec3 normal = lobe.normal;
+    const vec3 normal = lobe.normal, flat = lobe.geometric_normal;
+    const float is_known = lobe.knows_diffuse ? 1.0f : 0.0f;
     const tile_groups *g = &t->groups;
 #pragma omp simd
     for (uint32_t i = 0; i < TILE_GROUPS; i++) {
@@ -66,54 +69,88 @@ static inline __attribute__((always_inline)) void look_at_groups(helio_material_
         const float cosine = dot(normal, direction), soft = soft_cosine(cosine, g->edge[i], g->slope[i]);
         const float divisor = 1.0f + lobe.to_surface * g->spread[i], width = lobe.width + g->variance[i];
         const float left = specular_at(kind, &lobe, direction, width, cosine, soft, divisor);
-        const float light = g->light[i] * soft;
-        const int32_t taken = -((above > -g->edge[i]) & (g->light[i] > 0.0f));
-        groups->is_taken[i] = taken;
-        groups->specular[i] = left;
-        groups->gain[i] = (lobe.diffuse + left * divisor) / (lobe.diffuse + left);
-        groups->weight[i] = masked(light * (lobe.diffuse + left), taken);
+        const int32_t taken = -((above > -g->edge[i]) & (g->light[i] > 0.0f)), low = -(above < g->inner[i]);
+        const float light = masked(low ? g->light[i] * soft : g->moment[i] * cosine, taken);
+        const float above_flat = flat.x * g->x[i] + flat.y * g->y[i] + flat.z * g->z[i];
+        const float known = (above >= g->edge[i]) & (above_flat >= g->edge[i]) ? is_known : 0.0f;
+        const float value = lobe.diffuse * (1.0f - known) + left;
+        p->knows_diffuse[i] = known;
+        p->value[i] = value;
+        groups->taken[i] = light * (left * (divisor - 1.0f));
+        p->weight[i] = light * value;
         groups->specular_part[i] = light * left;
+        groups->is_low[i] = low & taken;
     }
 }
 
-/* In an order that is the same for all instruction sets. */
-static inline float sum_in_order(const float *values, uint32_t count)
+/* Sums in an order that is the same for all instruction sets: over groups, and over the tiles of one. */
+static inline float sum_of_tiles(const float *values)
 {
-    enum { LANES = 16 };
-    float lanes[LANES], sum = 0.0f;
+    float eight[8], four[4];
 #pragma omp simd
-    for (uint32_t i = 0; i < LANES; i++) {
-        float lane = values[i];
-        for (uint32_t k = i + LANES; k < count; k += LANES)
-            lane += values[k];
-        lanes[i] = lane;
-    }
-    for (uint32_t i = 0; i < LANES; i++)
-        sum += lanes[i];
-    return sum;
+    for (uint32_t i = 0; i < 8; i++)
+        eight[i] = values[i] + values[i + 8];
+#pragma omp simd
+    for (uint32_t i = 0; i < 4; i++)
+        four[i] = eight[i] + eight[i + 4];
+    return (four[0] + four[2]) + (four[1] + four[3]);
+}
+
+static inline float sum_of_groups(const float *values)
+{
+    float runs[TILE_RUN];
+    _Static_assert((int)TILE_RUN == (int)TILE_GROUP && (int)TILE_RUNS == 6, "six sums of sixteen");
+#pragma omp simd
+    for (uint32_t i = 0; i < TILE_RUN; i++)
+        runs[i] =
+            ((values[i] + values[i + 16]) + (values[i + 32] + values[i + 48])) + (values[i + 64] + values[i + 80]);
+    return sum_of_tiles(runs);
 }
 
 /* ---- tiles ---- */
 
-/* With one value of the lobe for all. */
-static inline __attribute__((always_inline)) void weigh_alike(const tiles *t, const tile_lobe *lobe, uint32_t group,
-                                                              float specular, float *restrict weights)
+/* Of a group that is not black: then a tile has a weight of at least the number of tiles, so that each of the others,
+ * however dark, can have 1 or more. */
+enum { POINT_LEAST_WEIGHT = TILE_GROUP * TILE_GROUP };
+
+/* Which of the groups of a run, or of the tiles of a group, are true, as bits. */
+static inline uint32_t bits_of(const int32_t *truths)
+{
+    uint32_t bits = 0;
+#pragma omp simd reduction(| : bits)
+    for (uint32_t i = 0; i < TILE_RUN; i++)
+        bits |= (truths[i] != 0) << i;
+    return bits;
+}
+
+static inline void add_hues(const tiles *t, uint32_t first, const float *restrict weights, group_lobes *restrict groups)
+{
+    for (int c = 0; c < 3; c++) {
+        const float *hues = t->colours.hue[c] + first;
+        float *sums = groups->hues[c];
+#pragma omp simd
+        for (uint32_t i = 0; i < TILE_GROUP; i++)
+            sums[i] += weights[i] * hues[i];
+    }
+}
+
+/* With one value of the BRDF for all. */
+static inline __attribute__((always_inline)) void weigh_alike(const tiles *t, const tile_lobe *lobe, uint32_t first,
+                                                              float value, float *restrict weights)
 {
     const vec3 normal = lobe->normal;
-    const float edge = lobe->edge, slope = lobe->slope, value = lobe->diffuse + specular;
-    const uint32_t first = group * TILE_GROUP;
+    const float edge = lobe->edge, slope = lobe->slope;
     const float *x = t->x + first, *y = t->y + first, *z = t->z + first, *light = t->light + first;
 #pragma omp simd
     for (uint32_t i = 0; i < TILE_GROUP; i++)
         weights[i] = light[i] * (soft_cosine(dot(normal, (vec3){x[i], y[i], z[i]}), edge, slope) * value);
 }
 
-/* With a value for each. wholes: adds what they would weigh if BRDF samples looked after nothing. */
+/* With a value for each. taken: adds what BRDF samples take. */
 static inline __attribute__((always_inline)) void weigh_apart(helio_material_kind kind, const tiles *t,
-                                                              const tile_lobe *lobe, uint32_t group,
-                                                              float *restrict weights, float *restrict wholes)
+                                                              const tile_lobe *lobe, uint32_t first, float diffuse,
+                                                              float *restrict weights, float *restrict taken)
 {
-    const uint32_t first = group * TILE_GROUP;
     const float *x = t->x + first, *y = t->y + first, *z = t->z + first, *light = t->light + first;
     const float *spread = t->spread + first;
 #pragma omp simd
@@ -122,138 +159,238 @@ static inline __attribute__((always_inline)) void weigh_apart(helio_material_kin
         const float cosine = dot(lobe->normal, direction), soft = soft_cosine(cosine, lobe->edge, lobe->slope);
         const float divisor = 1.0f + lobe->to_surface * spread[i];
         const float specular = specular_at(kind, lobe, direction, lobe->width, cosine, soft, divisor);
-        weights[i] = light[i] * (soft * (lobe->diffuse + specular));
-        wholes[i] += light[i] * (soft * (lobe->diffuse + specular * divisor));
+        weights[i] = light[i] * (soft * (diffuse + specular));
+        taken[i] += light[i] * (soft * (specular * (divisor - 1.0f)));
     }
+}
+
+/* Looks at the tiles of those groups of which the specular lobe has more than `least`. */
+static inline __attribute__((always_inline)) void refine_groups(helio_material_kind kind, const tiles *t,
+                                                                const tile_lobe *lobe, float least,
+                                                                group_lobes *restrict groups, point_tiles *restrict p)
+{
+    for (uint32_t begin = 0; begin < TILE_GROUPS; begin += TILE_RUN) {
+        int32_t taken[TILE_RUN];
+#pragma omp simd
+        for (uint32_t i = 0; i < TILE_RUN; i++)
+            taken[i] = groups->specular_part[begin + i] > least;
+        for (uint32_t rest = bits_of(taken); rest != 0; rest &= rest - 1) {
+            const uint32_t group = begin + (uint32_t)__builtin_ctz(rest), first = group * TILE_GROUP;
+            const float diffuse = lobe->diffuse * (1.0f - p->knows_diffuse[group]);
+            weigh_apart(kind, t, lobe, first, diffuse, p->looked_at + first, groups->tiles_taken);
+            add_hues(t, first, p->looked_at + first, groups);
+            p->weight[group] = sum_of_tiles(p->looked_at + first);
+            groups->taken[group] = 0.0f;
+            groups->is_low[group] = 0;
+            p->is_shared[group] = 0;
+        }
+    }
+}
+
+/* ... and of those others where the horizon may pass among them. */
+static inline __attribute__((always_inline)) void cut_groups(const tiles *t, const tile_lobe *lobe,
+                                                             group_lobes *restrict groups, point_tiles *restrict p)
+{
+    for (uint32_t begin = 0; begin < TILE_GROUPS; begin += TILE_RUN)
+        for (uint32_t rest = bits_of(groups->is_low + begin); rest != 0; rest &= rest - 1) {
+            const uint32_t group = begin + (uint32_t)__builtin_ctz(rest), first = group * TILE_GROUP;
+            weigh_alike(t, lobe, first, p->value[group], p->looked_at + first);
+            add_hues(t, first, p->looked_at + first, groups);
+            p->weight[group] = sum_of_tiles(p->looked_at + first);
+            p->is_shared[group] = 0;
+        }
 }
 
 static inline __attribute__((always_inline)) void weigh_groups(helio_material_kind kind, const tiles *t,
                                                                const tile_lobe *given, group_lobes *restrict groups,
-                                                               float *restrict weights)
+                                                               point_tiles *restrict p)
 {
     const tile_lobe lobe = *given;
-    look_at_groups(kind, t, &lobe, groups);
-    const float least = sum_in_order(groups->weight, TILE_GROUPS) / (float)POINT_REFINED_PARTS;
-    memset(groups->wholes, 0, sizeof groups->wholes);
-    for (uint32_t group = 0; group < TILE_GROUPS; group++) {
-        float *to = weights + (size_t)group * TILE_GROUP;
-        if (!groups->is_taken[group])
-            memset(to, 0, TILE_GROUP * sizeof *to);
-        else if (groups->specular_part[group] > least) {
-            weigh_apart(kind, t, &lobe, group, to, groups->wholes);
-            groups->gain[group] = 0.0f;
-        } else
-            weigh_alike(t, &lobe, group, groups->specular[group], to);
-    }
+    memset(groups->tiles_taken, 0, sizeof groups->tiles_taken);
+    memset(groups->hues, 0, sizeof groups->hues);
+    memset(p->is_shared, 1, sizeof p->is_shared);
+    look_at_groups(kind, t, &lobe, groups, p);
+    refine_groups(kind, t, &lobe, sum_of_groups(p->weight) * lobe.least_part, groups, p);
+    cut_groups(t, &lobe, groups, p);
 }
 
-/* See tables_kernel.c for why by its bits. Of a few registers side by side, so that none waits for the one before. */
-static float largest_of(const float *weights)
+/* Of groups that share one value of the BRDF among tiles that are all above the horizon their mean hue is known. */
+static void mix_hues(const group_lobes *groups, point_tiles *p)
 {
-    enum { LANES = 64 };
-    int32_t lanes[LANES] = {0}, largest_bits = 0;
-    for (uint32_t first = 0; first < TILES_MOST; first += LANES) {
+    const float(*m)[3][TILE_GROUPS] = p->tiles->groups.hue;
+    const vec3 normal = p->normal;
+    float red = sum_of_tiles(groups->hues[0]), green = sum_of_tiles(groups->hues[1]);
+    float blue = sum_of_tiles(groups->hues[2]);
+#pragma omp simd reduction(+ : red, green, blue)
+    for (uint32_t i = 0; i < TILE_GROUPS; i++) {
+        const float value = masked(p->value[i], -((p->is_shared[i] != 0) & (p->weight[i] > 0.0f)));
+        red += value * (normal.x * m[0][0][i] + normal.y * m[0][1][i] + normal.z * m[0][2][i]);
+        green += value * (normal.x * m[1][0][i] + normal.y * m[1][1][i] + normal.z * m[1][2][i]);
+        blue += value * (normal.x * m[2][0][i] + normal.y * m[2][1][i] + normal.z * m[2][2][i]);
+    }
+    const float per_brightness = p->brightness > 0.0f ? 1.0f / p->brightness : 0.0f;
+    p->hue[0] = red * per_brightness;
+    p->hue[1] = green * per_brightness;
+    p->hue[2] = blue * per_brightness;
+}
+
+static void find_irradiance(point_tiles *p)
+{
+    const float(*m)[3][TILE_GROUPS] = p->tiles->groups.radiance;
+    const vec3 normal = p->normal;
+    float red = 0.0f, green = 0.0f, blue = 0.0f;
+#pragma omp simd reduction(+ : red, green, blue)
+    for (uint32_t i = 0; i < TILE_GROUPS; i++) {
+        red += p->knows_diffuse[i] * (normal.x * m[0][0][i] + normal.y * m[0][1][i] + normal.z * m[0][2][i]);
+        green += p->knows_diffuse[i] * (normal.x * m[1][0][i] + normal.y * m[1][1][i] + normal.z * m[1][2][i]);
+        blue += p->knows_diffuse[i] * (normal.x * m[2][0][i] + normal.y * m[2][1][i] + normal.z * m[2][2][i]);
+    }
+    p->irradiance[0] = red;
+    p->irradiance[1] = green;
+    p->irradiance[2] = blue;
+}
+
+/* Groups that weigh less count as black, so that nothing that know_tiles() divides is subnormal. */
+static const float BLACK_BELOW = 0x1p-100f;
+
+/* What part each group has of all, and BRDF samples have beside them. */
+static void share_out(group_lobes *groups, point_tiles *p)
+{
+    int32_t largest = 0;
+#pragma omp simd reduction(max : largest)
+    for (uint32_t i = 0; i < TILE_GROUPS; i++) {
+        p->weight[i] = masked(p->weight[i], -(p->weight[i] >= BLACK_BELOW));
+        const int32_t bits = bits_of_float(p->weight[i]); /* see tables_kernel.c for why by its bits */
+        largest = bits > largest ? bits : largest;
+    }
+    const float light = sum_of_groups(p->weight);
+    const float taken = sum_of_groups(groups->taken) + sum_of_tiles(groups->tiles_taken);
+    const int exponent = fixed_point_exponent(float_of_bits(largest), tables_summand_bits(TILE_GROUPS));
+    const float factor = fixed_point_power(exponent);
+    uint32_t integers[TILE_GROUPS];
 #pragma omp simd
-        for (uint32_t i = 0; i < LANES; i++) {
-            int32_t bits = bits_of_float(weights[first + i]);
-            lanes[i] = bits > lanes[i] ? bits : lanes[i];
-        }
+    for (uint32_t i = 0; i < TILE_GROUPS; i++) {
+        const uint32_t integer = fixed_point_integer(p->weight[i], factor);
+        integers[i] = integer > 0 && integer < POINT_LEAST_WEIGHT ? POINT_LEAST_WEIGHT : integer;
     }
-#pragma omp simd reduction(max : largest_bits)
-    for (uint32_t i = 0; i < LANES; i++)
-        largest_bits = lanes[i] > largest_bits ? lanes[i] : largest_bits;
-    return float_of_bits(largest_bits);
-}
-
-static void sum_groups(const group_lobes *groups, const float *weights, float factor, point_tiles *p)
-{
-    uint32_t sum = 0;
-    for (uint32_t group = 0; group < TILE_GROUPS; group++) {
-        uint32_t *integers = p->weights + (size_t)group * TILE_GROUP;
-        p->sums[group] = sum;
-        if (!groups->is_taken[group]) {
-            memset(integers, 0, TILE_GROUP * sizeof *integers);
-            continue;
-        }
-        fixed_point_quantise(weights + (size_t)group * TILE_GROUP, TILE_GROUP, factor, integers);
-        sum = fixed_point_total(integers, TILE_GROUP, sum);
-    }
-    p->sums[TILE_GROUPS] = p->total = sum;
-}
-
-/* The sum of all weights, as integers, if BRDF samples looked after nothing. */
-static float find_whole(const point_tiles *p, float factor, group_lobes *groups)
-{
-#pragma omp simd
-    for (uint32_t i = 0; i < TILE_GROUPS; i++)
-        groups->gain[i] *= (float)(int32_t)(p->sums[i + 1] - p->sums[i]); /* below 2^31 */
-    return sum_in_order(groups->gain, TILE_GROUPS) + factor * sum_in_order(groups->wholes, TILE_GROUP);
+    memset(p->is_known, 0, sizeof p->is_known);
+    p->total = p->sums[TILE_GROUPS] = fixed_point_scan(integers, TILE_GROUPS, 0, p->sums);
+    p->brightness = light;
+    p->left = taken > 0.0f ? taken / (taken + light) : 0.0f;
+    p->share = p->total != 0 ? 1.0f / (float)p->total : 0.0f;
 }
 
 void KERNEL(weigh_point)(const tiles *t, const tile_lobe *lobe, point_tiles *p)
 {
-    alignas(64) float weights[TILES_MOST];
     group_lobes groups;
+    p->tiles = t;
+    p->normal = lobe->normal;
     if (lobe->kind == HELIO_MATERIAL_PHONG)
-        weigh_groups(HELIO_MATERIAL_PHONG, t, lobe, &groups, weights);
+        weigh_groups(HELIO_MATERIAL_PHONG, t, lobe, &groups, p);
     else
-        weigh_groups(HELIO_MATERIAL_GGX, t, lobe, &groups, weights);
-    const int exponent = fixed_point_exponent(largest_of(weights), tables_summand_bits(t->count));
-    const float factor = ldexpf(1.0f, exponent);
-    sum_groups(&groups, weights, factor, p);
-    const float whole = find_whole(p, factor, &groups), light = (float)p->total;
-    p->brightness = ldexpf(light, -exponent);
-    p->left = whole > light ? 1.0f - light / whole : 0.0f;
-    p->share = p->total != 0 ? 1.0f / light : 0.0f;
+        weigh_groups(HELIO_MATERIAL_GGX, t, lobe, &groups, p);
+    share_out(&groups, p);
+    mix_hues(&groups, p);
+    if (lobe->knows_diffuse)
+        find_irradiance(p);
 }
 
-void KERNEL(mix_hues)(const tiles *t, point_tiles *p)
+/* The tiles of a group that share the BRDF, and are above the horizon. */
+static inline void weigh_shared(const point_tiles *p, uint32_t group, float *restrict weights)
 {
-    const float *reds = t->colours.hue[0], *greens = t->colours.hue[1], *blues = t->colours.hue[2];
-    const int32_t *weights = (const int32_t *)p->weights; /* below 2^31 */
-    float red = 0, green = 0, blue = 0;
-#pragma omp simd reduction(+ : red, green, blue)
-    for (uint32_t i = 0; i < TILES_MOST; i++) {
-        const float weight = (float)weights[i];
-        red += weight * reds[i];
-        green += weight * greens[i];
-        blue += weight * blues[i];
+    const vec3 normal = p->normal;
+    const tiles *t = p->tiles;
+    const float value = p->value[group];
+    const uint32_t first = group * TILE_GROUP;
+    const float *x = t->x + first, *y = t->y + first, *z = t->z + first, *light = t->light + first;
+#pragma omp simd
+    for (uint32_t i = 0; i < TILE_GROUP; i++)
+        weights[i] = light[i] * (dot(normal, (vec3){x[i], y[i], z[i]}) * value);
+}
+
+/* A tile that has at least a 16th of the weight of them all, or nearly so. */
+static inline uint32_t heavy_tile(const float *weights, float sum)
+{
+    const float least = sum * (0.99f / TILE_GROUP);
+    int32_t is_heavy[TILE_GROUP];
+#pragma omp simd
+    for (uint32_t i = 0; i < TILE_GROUP; i++)
+        is_heavy[i] = weights[i] >= least;
+    return (uint32_t)__builtin_ctz(bits_of(is_heavy) | 1u << (TILE_GROUP - 1));
+}
+
+/* Integers that sum to that of the group: rounded down, and what is left over or too much a heavy tile takes. */
+void KERNEL(know_tiles)(point_tiles *p, uint32_t group)
+{
+    const uint32_t first = group * TILE_GROUP, whole = p->sums[group + 1] - p->sums[group];
+    float *weights = p->looked_at + first;
+    uint32_t *integers = p->weights + first;
+    p->is_known[group] = true;
+    if (whole == 0) {
+        memset(integers, 0, TILE_GROUP * sizeof *integers);
+        return;
     }
-    p->hue[0] = red * p->share;
-    p->hue[1] = green * p->share;
-    p->hue[2] = blue * p->share;
+    if (p->is_shared[group])
+        weigh_shared(p, group, weights);
+    const float factor = (float)(int32_t)whole, per_weight = 1.0f / p->weight[group];
+    uint32_t sum = 0;
+#pragma omp simd reduction(+ : sum)
+    for (uint32_t i = 0; i < TILE_GROUP; i++) {
+        const int32_t least = weights[i] > 0.0f, integer = (int32_t)(weights[i] * per_weight * factor);
+        integers[i] = (uint32_t)(integer > least ? integer : least);
+        sum += integers[i];
+    }
+    integers[heavy_tile(weights, p->weight[group])] += whole - sum;
 }
 
 /* ---- samples ---- */
 
-static void choose_tiles(const normal_bins *bins, const point_tiles *p, uint32_t samples, uint32_t first,
-                         uint32_t count, uint32_t seed, tile_draw *draws)
+static void know_tiles_of(void *user, uint32_t group)
 {
-    const tile_tree tree = {p->sums, p->weights, bins->list_starts};
-    tile_tree_draw(&tree, true, samples, first, count, seed, draws);
-    for (uint32_t i = 0; i < count; i++)
-        __builtin_prefetch(&bins->listed[draws[i].element]);
+    point_tiles *p = user;
+    if (!p->is_known[group])
+        KERNEL(know_tiles)(p, group);
 }
 
-void KERNEL(take_tiles)(const gathering *g, uint32_t first, uint32_t count, sample_block *block)
+void KERNEL(choose_tiles)(gathering *g, uint32_t first, uint32_t count, sample_block *block)
 {
     const normal_bins *bins = g->pools->bins;
+    const tile_tree tree = {.sums = g->tiles.sums,
+                            .weights = g->tiles.weights,
+                            .list_starts = bins->list_starts,
+                            .know = know_tiles_of,
+                            .user = &g->tiles,
+                            .listed = bins->listed};
+    tile_tree_draw(&tree, true, g->counts.realised[0], first, count, g->tile_seed, block->draws);
+    block->draw_count = count;
+}
+
+void KERNEL(take_tiles)(const gathering *g, sample_block *block)
+{
+    const listed_sample *listed = g->pools->bins->listed;
     const float expected = g->counts.expected[0];
-    tile_draw draws[BLOCK_SAMPLES] = {{0}}; /* so that analyzers need not follow the tree */
-    choose_tiles(bins, &g->tiles, g->counts.realised[0], first, count, g->tile_seed, draws);
-    for (uint32_t i = 0, k = block->count; i < count; i++, k++) {
-        const listed_sample *sample = &bins->listed[draws[i].element];
-        block->samples[SAMPLE_X][k] = sample->direction[0];
-        block->samples[SAMPLE_Y][k] = sample->direction[1];
-        block->samples[SAMPLE_Z][k] = sample->direction[2];
-        block->samples[SAMPLE_RED][k] = sample->radiance[0];
-        block->samples[SAMPLE_GREEN][k] = sample->radiance[1];
-        block->samples[SAMPLE_BLUE][k] = sample->radiance[2];
-        block->listed[k] = draws[i].element;
-        for (int c = 0; c < 3; c++)
-            block->hue[c] += sample->hue[c];
-        block->samples[SAMPLE_DENSITY][k] =
-            point_tiles_probability(&g->tiles, draws[i].position) * sample->density * expected;
+    const float brightness = g->tiles.brightness;
+    float red = 0.0f, green = 0.0f, blue = 0.0f;
+    for (uint32_t i = 0; i < block->draw_count; i++) {
+        const tile_draw *draw = &block->draws[i];
+        const listed_sample *sample = &listed[draw->element];
+        const float probability = point_tiles_probability(&g->tiles, draw->position);
+        /* The mean hue is by weights, which integers only nearly are. */
+        const float exactly = g->tiles.looked_at[draw->position] / (brightness * probability);
+        block->samples[SAMPLE_X][i] = sample->direction[0];
+        block->samples[SAMPLE_Y][i] = sample->direction[1];
+        block->samples[SAMPLE_Z][i] = sample->direction[2];
+        block->samples[SAMPLE_RED][i] = sample->radiance[0];
+        block->samples[SAMPLE_GREEN][i] = sample->radiance[1];
+        block->samples[SAMPLE_BLUE][i] = sample->radiance[2];
+        block->samples[SAMPLE_DENSITY][i] = probability * sample->density * expected;
+        block->known[i] = g->tiles.knows_diffuse[draw->position / TILE_GROUP];
+        red += exactly * sample->hue[0];
+        green += exactly * sample->hue[1];
+        blue += exactly * sample->hue[2];
     }
-    block->count += count;
+    block->hue[0] = red;
+    block->hue[1] = green;
+    block->hue[2] = blue;
+    block->count = block->draw_count;
 }

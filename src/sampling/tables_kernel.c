@@ -39,7 +39,7 @@ row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, float level
     uint32_t integers[PIECE], sum = 0;
     float largest = weigh_row(rgb, solid_angles, level, size, weights);
     int exponent = fixed_point_exponent(largest, tables_summand_bits(size));
-    float factor = ldexpf(1.0f, exponent);
+    float factor = fixed_point_power(exponent);
     for (uint32_t first = 0; first < size; first += PIECE) {
         uint32_t count = size - first < PIECE ? size - first : PIECE;
         fixed_point_quantise(weights + first, count, factor, integers);

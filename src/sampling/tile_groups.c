@@ -27,6 +27,7 @@ static void place_group(tiles *t, uint32_t group)
     groups->z[group] = middle.z;
     groups->edge[group] = tiles_sine(acosf(least) + t->radius);
     groups->slope[group] = 0.25f / groups->edge[group];
+    groups->inner[group] = tiles_sine(acosf(least) + 0.25f * t->radius);
 }
 
 void tile_groups_place(tiles *t)
@@ -53,12 +54,33 @@ static void sum_group(tiles *t, uint32_t group)
     groups->light_x[group] = has_mean ? sum.x / length : groups->x[group];
     groups->light_y[group] = has_mean ? sum.y / length : groups->y[group];
     groups->light_z[group] = has_mean ? sum.z / length : groups->z[group];
+    groups->moment[group] = length;
     groups->variance[group] = 1.0f - part * part;
     groups->spread[group] = light > 0.0f ? spread / light : 0.0f;
 }
 
+static void sum_colour(tiles *t, uint32_t group, int c)
+{
+    const float *hue = t->colours.hue[c];
+    vec3 sum = {0, 0, 0};
+    for (uint32_t i = group * TILE_GROUP; i < (group + 1) * TILE_GROUP; i++)
+        sum = add_scaled(sum, centre_of(t, i), t->light[i] * hue[i]);
+    t->groups.hue[c][0][group] = sum.x;
+    t->groups.hue[c][1][group] = sum.y;
+    t->groups.hue[c][2][group] = sum.z;
+    for (int axis = 0; axis < 3; axis++) {
+        float radiance = 0.0f;
+        for (uint32_t i = group * TILE_GROUP; i < (group + 1) * TILE_GROUP; i++)
+            radiance += t->colours.light[axis][c][i];
+        t->groups.radiance[c][axis][group] = radiance;
+    }
+}
+
 void tile_groups_update(tiles *t)
 {
-    for (uint32_t group = 0; group < t->groups.count; group++)
+    for (uint32_t group = 0; group < t->groups.count; group++) {
         sum_group(t, group);
+        for (int c = 0; c < 3; c++)
+            sum_colour(t, group, c);
+    }
 }

@@ -25,11 +25,17 @@ typedef struct tile_groups {
     alignas(64) float edge[TILE_GROUPS]; /* of a group whose cosine to a normal is at most the negative of this, no tile
                                             reaches above the horizon */
     alignas(64) float slope[TILE_GROUPS]; /* 1 / (4 edge) */
+    alignas(64) float inner[TILE_GROUPS]; /* of one whose cosine is at least this, the centres of all tiles are above
+                                             the horizon; 2 where they are too far apart */
     /* Of a frame. */
     alignas(64) float light[TILE_GROUPS];   /* sum of tiles.light */
     alignas(64) float light_x[TILE_GROUPS]; /* its mean direction, of unit length */
     alignas(64) float light_y[TILE_GROUPS];
     alignas(64) float light_z[TILE_GROUPS];
+    alignas(64) float moment[TILE_GROUPS];         /* sum of tiles.light x cosine to that direction */
+    alignas(64) float hue[3][3][TILE_GROUPS];      /* sums of tiles.light x hue x direction (x, y, z), by colour */
+    alignas(64) float radiance[3][3][TILE_GROUPS]; /* integrals of radiance x direction, by colour, as tile_colours has
+                                                      them of tiles */
     alignas(64) float variance[TILE_GROUPS]; /* of the directions to its tiles about that, rad^2 for small angles */
     alignas(64) float spread[TILE_GROUPS];   /* mean of tiles.spread */
 } tile_groups;
@@ -37,7 +43,7 @@ typedef struct tile_groups {
 /* Finds where they are; the tiles' places must be there. */
 void tile_groups_place(struct tiles *t);
 
-/* Finds their light; that of the tiles must be there. */
+/* Finds their light; that of the tiles, and its colours, must be there. */
 void tile_groups_update(struct tiles *t);
 
 #endif

@@ -16,20 +16,18 @@
 #define HELIOSTAT_SRC_TILE_TREE_H
 
 #include "core/random.h"
-#include "sampling/tiles.h"
+#include "sampling/fixed_point.h"
+#include "sampling/normal_bins.h"
 
 /* What is shared out by. */
 typedef struct tile_tree {
     const uint32_t *sums;        /* [TILE_GROUPS + 1]: prefix sums over groups, below 2^31 */
-    const uint32_t *weights;     /* [TILES_MOST] */
+    const uint32_t *weights;     /* [TILES_MOST], of groups for which know() was called; they sum to their group's */
     const uint32_t *list_starts; /* [TILES_MOST + 1] */
+    void (*know)(void *user, uint32_t group); /* NULL, or called before the weights of a group are read */
+    void *user;
+    const listed_sample *listed; /* NULL, or what samples are to be read from: it is sent for */
 } tile_tree;
-
-/* A sample: one of a tile's list. */
-typedef struct tile_draw {
-    uint32_t element;  /* in all lists */
-    uint32_t position; /* of the tile */
-} tile_draw;
 
 /* The random number of a node: of a tile by its position, and of these. */
 enum {
@@ -121,8 +119,11 @@ static inline tile_steps tile_walk_begin(const tile_walk *w, uint32_t sum, uint3
 
 static inline void tile_walk_put(tile_walk *w, uint32_t element, uint32_t position)
 {
-    if (w->index - w->first < w->count)
+    if (w->index - w->first < w->count) {
         w->draws[w->index - w->first] = (tile_draw){element, position};
+        if (w->tree->listed != NULL)
+            __builtin_prefetch(&w->tree->listed[element]);
+    }
     w->index++;
 }
 
@@ -162,9 +163,15 @@ static inline void tile_walk_group(tile_walk *w, uint32_t group, uint32_t sample
 {
     const uint32_t total = w->tree->sums[group + 1] - w->tree->sums[group], first = group * TILE_GROUP;
     tile_steps steps = tile_walk_begin(w, total, samples, TILE_TREE_GROUPS + group);
-    int32_t ends[TILE_CHILDREN], end = 0;
-    for (int i = 0; i < TILE_CHILDREN; i++)
-        ends[i] = end += (int32_t)w->tree->weights[first + (uint32_t)i];
+    if (w->tree->know != NULL)
+        w->tree->know(w->tree->user, group);
+    const uint32_t *weights = w->tree->weights + first;
+    uint32_t starts[TILE_CHILDREN];
+    int32_t ends[TILE_CHILDREN];
+    fixed_point_scan(weights, TILE_CHILDREN, 0, starts);
+#pragma omp simd
+    for (uint32_t i = 0; i < TILE_CHILDREN; i++)
+        ends[i] = (int32_t)(starts[i] + weights[i]);
     uint32_t tile = tile_child_at(ends, (int32_t)tile_steps_at(&steps)), count = 1;
     while (--steps.left > 0) {
         steps.place += steps.step;

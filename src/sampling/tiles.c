@@ -211,6 +211,6 @@ void tiles_update(tiles *t, const helio_tables *tables)
     summing work = {t, tables};
     context_parallel_for(t->context, CUBE_FACES * (size_t)t->per_edge, sum_row_of_tiles, &work);
     find_light(t);
-    tile_groups_update(t);
     tile_colours_update(t, tables->environment);
+    tile_groups_update(t);
 }

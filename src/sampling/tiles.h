@@ -45,6 +45,12 @@ typedef struct tiles {
                                  tile, as row_densities of the tables do */
 } tiles;
 
+/* A sample: one of a tile's list. */
+typedef struct tile_draw {
+    uint32_t element;  /* in all lists */
+    uint32_t position; /* of the tile */
+} tile_draw;
+
 helio_status tiles_create(helio_context *context, uint32_t size, tiles **out);
 void tiles_destroy(tiles *t);
 
@@ -63,10 +69,15 @@ static inline uint32_t tiles_position(const tiles *t, uint32_t face, uint32_t ro
 
 /* face_place_density()'s unit for the density given the tile: the probabilities of its row in the tile and of its texel
  * in that part of the row, from the stored integers. */
-static inline float tiles_unit_density(const tiles *t, const face_place *at)
+static inline const float *tiles_unit_density_at(const tiles *t, const face_place *at)
 {
     const size_t line = (size_t)at->face * t->size + at->row;
-    return t->segment_densities[line * t->per_edge + t->of_line[at->column]];
+    return &t->segment_densities[line * t->per_edge + t->of_line[at->column]];
+}
+
+static inline float tiles_unit_density(const tiles *t, const face_place *at)
+{
+    return *tiles_unit_density_at(t, at);
 }
 
 #endif

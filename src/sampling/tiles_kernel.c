@@ -24,6 +24,6 @@ uint32_t KERNEL(weigh_tiles)(const tiles *t, const normal_bin *bin, uint32_t *su
     alignas(64) float weights[TILES_MOST];
     alignas(64) uint32_t integers[TILES_MOST];
     int exponent = fixed_point_exponent(weigh(t, bin, t->count, weights), tables_summand_bits(t->count));
-    fixed_point_quantise(weights, t->count, ldexpf(1.0f, exponent), integers);
+    fixed_point_quantise(weights, t->count, fixed_point_power(exponent), integers);
     return sums[t->count] = fixed_point_scan(integers, t->count, 0, sums);
 }

@@ -13,7 +13,8 @@ typedef enum mixture {
 
 /* kind and mix are constants where this is expanded, and so vanish from the loop. */
 static inline __attribute__((always_inline)) void weigh_samples(helio_material_kind kind, mixture mix,
-                                                                const gathering *g, sample_block *restrict block)
+                                                                bool knows_diffuse, const gathering *g,
+                                                                sample_block *restrict block)
 {
     const float intensity = g->environment->intensity, surface_expected = g->counts.expected[TECHNIQUE_SURFACE];
     const brdf surface = g->surface, proposal = g->proposal; /* copies: nothing written below can change them */
@@ -32,6 +33,8 @@ static inline __attribute__((always_inline)) void weigh_samples(helio_material_k
         else if (mix == MIXTURE_COSINE)
             total += surface_expected * brdf_density_of(HELIO_MATERIAL_DIFFUSE, &proposal, direction);
         vec3 value = brdf_value_above(kind, &surface, direction, cosine);
+        if (knows_diffuse)
+            value = add_scaled(value, surface.colours[0], -block->known[i]);
         float factor = cosine * intensity / total;
         int32_t counts = -((i < count) & (cosine > 0.0f) & (above > 0.0f) & (total > 0.0f));
         block->red[i] = masked(samples[SAMPLE_RED][i] * value.x * factor, counts);
@@ -41,15 +44,25 @@ static inline __attribute__((always_inline)) void weigh_samples(helio_material_k
     }
 }
 
+/* Points that shine may know diffuse light. */
+static inline __attribute__((always_inline)) void weigh_lobes(helio_material_kind kind, mixture mix, const gathering *g,
+                                                              sample_block *block)
+{
+    if (kind != HELIO_MATERIAL_DIFFUSE && g->knows_diffuse)
+        weigh_samples(kind, mix, true, g, block);
+    else
+        weigh_samples(kind, mix, false, g, block);
+}
+
 static inline __attribute__((always_inline)) void weigh_mixture(helio_material_kind kind, const gathering *g,
                                                                 sample_block *block)
 {
     if (g->counts.expected[TECHNIQUE_SURFACE] == 0.0f)
-        weigh_samples(kind, MIXTURE_LIGHT_ONLY, g, block);
+        weigh_lobes(kind, MIXTURE_LIGHT_ONLY, g, block);
     else if (g->pools->parts.surface == STRATEGY_SURFACE_COSINE)
-        weigh_samples(kind, MIXTURE_COSINE, g, block);
+        weigh_samples(kind, MIXTURE_COSINE, false, g, block);
     else
-        weigh_samples(kind, MIXTURE_SURFACE, g, block);
+        weigh_lobes(kind, MIXTURE_SURFACE, g, block);
 }
 
 void KERNEL(weigh)(const gathering *g, sample_block *block)

@@ -11,7 +11,8 @@ _Static_assert(sizeof(control_matrix) == LAYOUT_CONTROL_ROWS * 4 * sizeof(float)
                    (int)LAYOUT_CONTROL_CHUNK == (int)CONTROL_CHUNK,
                "as in control.h");
 _Static_assert((int)LAYOUT_TILE_GROUP == (int)TILE_GROUP && (int)LAYOUT_TILE_RUN == (int)TILE_RUN &&
-                   (int)LAYOUT_TILES_MOST == (int)TILES_MOST && (int)LAYOUT_REFINED_PARTS == (int)POINT_REFINED_PARTS,
+                   (int)LAYOUT_TILES_MOST == (int)TILES_MOST && (int)LAYOUT_REFINED_PARTS == (int)POINT_REFINED_PARTS &&
+                   (int)LAYOUT_REFINED_TIMES == (int)POINT_REFINED_TIMES,
                "as in tiles.h and point_tiles.h");
 
 /* ---- creation ----------------------------------------------------------------------------- */
@@ -35,7 +36,8 @@ static helio_status create_buffers(vulkan_light *light)
         {&light->tile_sums, BUFFER_ON_DEVICE, (uint64_t)t->count * t->stride, sizeof(uint32_t), "the rows of tiles"},
         {&light->segment_densities, BUFFER_ON_DEVICE, segments, sizeof(float), "the densities of tiles"},
         {&light->tile_spreads, BUFFER_ON_DEVICE, t->count, sizeof(float), "the spreads of tiles"},
-        {&light->groups, BUFFER_ON_DEVICE, t->groups.count, 3 * 4 * sizeof(float), "the groups of tiles"},
+        {&light->groups, BUFFER_ON_DEVICE, t->groups.count, LAYOUT_GROUP_ROWS * 4 * sizeof(float),
+         "the groups of tiles"},
         {&light->bins, BUFFER_ON_DEVICE, bins->count, 4 * sizeof(float), "the bins"},
         {&light->bin_sums, BUFFER_ON_DEVICE, (uint64_t)bins->count * (t->count + 1), sizeof(uint32_t),
          "the sums of bins"},
@@ -124,7 +126,7 @@ static helio_status create_passes(vulkan_light *light)
 typedef struct geometry {
     uint32_t grid[TILES_MOST], positions[TILES_MOST];
     float tiles[TILES_MOST][4];
-    float groups[TILE_GROUPS][3][4];
+    float groups[TILE_GROUPS][LAYOUT_GROUP_ROWS][4];
     float bins[CUBE_FACES * NORMAL_BINS_MOST * NORMAL_BINS_MOST][4];
 } geometry;
 
@@ -141,6 +143,7 @@ static void fill_geometry(const normal_bins *bins, geometry *g)
     for (uint32_t i = 0; i < t->groups.count; i++) {
         vec3_to((vec3){t->groups.x[i], t->groups.y[i], t->groups.z[i]}, g->groups[i][0]);
         g->groups[i][0][3] = t->groups.edge[i];
+        g->groups[i][2][3] = t->groups.inner[i];
     }
     for (uint32_t i = 0; i < bins->count; i++) {
         vec3_to(bins->bins[i].centre, g->bins[i]);
