@@ -351,7 +351,8 @@ typedef struct point_queue {
     const helio_shading_point *points;
     const helio_estimate_desc *desc;
     const point_block *block;
-    uint32_t current, next; /* the latter is block->count if no other follows */
+    uint32_t count;
+    uint32_t current, next; /* the latter is count if no other follows */
     bool has_begun;         /* the next */
     uint32_t turn;          /* which of these is of the current point; the other is of the next */
     gathering gatherings[2];
@@ -363,9 +364,9 @@ static void begin_next(point_queue *queue)
     if (queue->has_begun)
         return;
     queue->has_begun = true;
-    while (queue->next < queue->block->count && is_free && reads_pools_alone(queue->block, queue->next))
+    while (queue->next < queue->count && is_free && reads_pools_alone(queue->block, queue->next))
         queue->next++;
-    if (queue->next < queue->block->count)
+    if (queue->next < queue->count)
         begin(&queue->gatherings[1 - queue->turn], queue->pools, &queue->points[queue->next], queue->desc, queue->block,
               queue->next, is_free);
 }
@@ -386,7 +387,6 @@ static void estimate_by_blocks(point_queue *queue, estimate_result *result)
     sample_block block;
     block_plan plan;
     float hues[3] = {0};
-    *result = (estimate_result){0};
     for (sample_cursor cursor = {0}; choose_block(g, kernels, &cursor, &plan, &block);) {
         begin_next(queue);
         take_block(g, kernels, &plan, &block);
@@ -464,6 +464,7 @@ void estimate_points(const helio_pools *pools, uint32_t count, const helio_shadi
 {
     point_block block;
     prepare_points(pools, count, points, desc, &block);
+    memset(results, 0, count * sizeof *results);
     if (desc->visibility == NULL && has_points_of_pools(&block))
         estimate_from_pools(pools, desc->samples, points, &block, results);
     point_queue queue;
@@ -472,6 +473,7 @@ void estimate_points(const helio_pools *pools, uint32_t count, const helio_shadi
     queue.points = points;
     queue.desc = desc;
     queue.block = &block;
+    queue.count = count;
     queue.next = queue.turn = 0;
     queue.has_begun = false;
     begin_next(&queue);

@@ -40,8 +40,7 @@ static inline __attribute__((always_inline)) float specular_at(helio_material_ki
 
 /* ---- groups ---- */
 
-/* What a point thinks of a group of tiles, by the mean direction of its light, and what of the tiles that it has looked
- * at is the same for all groups. */
+/* What a point thinks of groups of tiles, by the mean direction of their light. */
 typedef struct group_lobes {
     alignas(64) float specular_part[TILE_GROUPS]; /* light x cosine x specular lobe, as BRDF samples leave it */
     alignas(64) float taken[TILE_GROUPS];         /* ... what they take of that */
