@@ -71,7 +71,7 @@ static inline __attribute__((always_inline)) void look_at_groups(helio_material_
         const int32_t taken = -((above > -g->edge[i]) & (g->light[i] > 0.0f)), low = -(above < g->inner[i]);
         const float light = masked(low ? g->light[i] * soft : g->moment[i] * cosine, taken);
         const float above_flat = flat.x * g->x[i] + flat.y * g->y[i] + flat.z * g->z[i];
-        const float known = (above >= g->edge[i]) & (above_flat >= g->edge[i]) ? is_known : 0.0f;
+        const float known = ((above >= g->edge[i]) & (above_flat >= g->edge[i])) ? is_known : 0.0f;
         const float value = lobe.diffuse * (1.0f - known) + left;
         p->knows_diffuse[i] = known;
         p->value[i] = value;
