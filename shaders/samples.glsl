@@ -19,6 +19,12 @@ void add_sample(vec3 light, bool counts, vec3 direction, inout vec4 sum)
     }
 }
 
+// The BRDF, less what is known.
+vec3 sampled_value(brdf b, vec3 direction, float cosine)
+{
+    return brdf_value(b, direction, cosine) - known_diffuse * b.colours[0];
+}
+
 // A sample of a light technique. light: its radiance / density. expected: how many of them the technique draws.
 void add_light_sample(prepared_point p, vec3 direction, vec3 light, float density, float expected, bool may_mix,
                       inout vec4 sum)
@@ -29,7 +35,7 @@ void add_light_sample(prepared_point p, vec3 direction, vec3 light, float densit
         light *= density;
         total = density * expected + p.surface_expected * brdf_density(p.surface, direction);
     }
-    const vec3 value = brdf_value(p.surface, direction, cosine) - known_diffuse * p.surface.colours[0];
+    const vec3 value = sampled_value(p.surface, direction, cosine);
     add_sample(light * value * (cosine / total), cosine > 0.0 && above > 0.0 && total > 0.0, direction, sum);
 }
 
@@ -62,8 +68,7 @@ void add_surface_sample(prepared_point p, surface_sample drawn, float of_light, 
                                                            : brdf_density(p.surface, drawn.direction);
     const float total = of_light + p.surface_expected * density;
     const vec3 radiance = texel_radiance(texel_index(drawn.at.face, drawn.at.row, drawn.at.column));
-    const vec3 value =
-        brdf_value(p.surface, drawn.direction, drawn.cosine) - known_diffuse * p.surface.colours[0];
+    const vec3 value = sampled_value(p.surface, drawn.direction, drawn.cosine);
     add_sample(radiance * value * (drawn.cosine / total), total > 0.0, drawn.direction, sum);
 }
 

@@ -72,7 +72,8 @@ tile_lobe prepare_lobe(brdf b, vec3 geometric_normal)
     const float diffuse = luminance(b.colours[0]);
     const float least_part = (1.0 + float(LAYOUT_REFINED_TIMES - 1) * need_of_lobe(b)) / float(LAYOUT_REFINED_PARTS);
     const bool knows_diffuse = VISIBILITY == 0u && STEP.control_part == 1.0 && diffuse > 0.0;
-    tile_lobe lobe = tile_lobe(diffuse, luminance(b.colours[1]), 0.0, 0.0, to_surface(b), least_part, knows_diffuse, geometric_normal);
+    tile_lobe lobe = tile_lobe(diffuse, luminance(b.colours[1]), 0.0, 0.0, to_surface(b), least_part, knows_diffuse,
+                               geometric_normal);
     if (is_ggx(b.kind)) {
         lobe.alpha = sqrt(b.shape);
         lobe.width = b.shape + edge2;

@@ -122,8 +122,11 @@ static inline uint32_t bits_of(const int32_t *truths)
     return bits;
 }
 
-static inline void add_hues(const tiles *t, uint32_t first, const float *restrict weights, group_lobes *restrict groups)
+/* What the tiles of a group that has been looked at weigh together, and their hues. */
+static inline void add_tiles(const tiles *t, uint32_t group, group_lobes *restrict groups, point_tiles *restrict p)
 {
+    const uint32_t first = group * TILE_GROUP;
+    const float *weights = p->looked_at + first;
     for (int c = 0; c < 3; c++) {
         const float *hues = t->colours.hue[c] + first;
         float *sums = groups->hues[c];
@@ -131,6 +134,8 @@ static inline void add_hues(const tiles *t, uint32_t first, const float *restric
         for (uint32_t i = 0; i < TILE_GROUP; i++)
             sums[i] += weights[i] * hues[i];
     }
+    p->weight[group] = sum_of_tiles(weights);
+    p->is_shared[group] = 0;
 }
 
 /* With one value of the BRDF for all. */
@@ -177,11 +182,9 @@ static inline __attribute__((always_inline)) void refine_groups(helio_material_k
             const uint32_t group = begin + (uint32_t)__builtin_ctz(rest), first = group * TILE_GROUP;
             const float diffuse = lobe->diffuse * (1.0f - p->knows_diffuse[group]);
             weigh_apart(kind, t, lobe, first, diffuse, p->looked_at + first, groups->tiles_taken);
-            add_hues(t, first, p->looked_at + first, groups);
-            p->weight[group] = sum_of_tiles(p->looked_at + first);
+            add_tiles(t, group, groups, p);
             groups->taken[group] = 0.0f;
             groups->is_low[group] = 0;
-            p->is_shared[group] = 0;
         }
     }
 }
@@ -194,9 +197,7 @@ static inline __attribute__((always_inline)) void cut_groups(const tiles *t, con
         for (uint32_t rest = bits_of(groups->is_low + begin); rest != 0; rest &= rest - 1) {
             const uint32_t group = begin + (uint32_t)__builtin_ctz(rest), first = group * TILE_GROUP;
             weigh_alike(t, lobe, first, p->value[group], p->looked_at + first);
-            add_hues(t, first, p->looked_at + first, groups);
-            p->weight[group] = sum_of_tiles(p->looked_at + first);
-            p->is_shared[group] = 0;
+            add_tiles(t, group, groups, p);
         }
 }
 
@@ -213,40 +214,37 @@ static inline __attribute__((always_inline)) void weigh_groups(helio_material_ki
     cut_groups(t, &lobe, groups, p);
 }
 
+/* Adds the sums over groups, by colour, of factor x normal . vector. */
+static inline void add_along(vec3 normal, const float (*vectors)[3][TILE_GROUPS], const float *factors, float sums[3])
+{
+    for (int c = 0; c < 3; c++) {
+        const float *x = vectors[c][0], *y = vectors[c][1], *z = vectors[c][2];
+        float sum = 0.0f;
+#pragma omp simd reduction(+ : sum)
+        for (uint32_t i = 0; i < TILE_GROUPS; i++)
+            sum += factors[i] * (normal.x * x[i] + normal.y * y[i] + normal.z * z[i]);
+        sums[c] += sum;
+    }
+}
+
 /* Of groups that share one value of the BRDF among tiles that are all above the horizon their mean hue is known. */
 static void mix_hues(const group_lobes *groups, point_tiles *p)
 {
-    const float(*m)[3][TILE_GROUPS] = p->tiles->groups.hue;
-    const vec3 normal = p->normal;
-    float red = sum_of_tiles(groups->hues[0]), green = sum_of_tiles(groups->hues[1]);
-    float blue = sum_of_tiles(groups->hues[2]);
-#pragma omp simd reduction(+ : red, green, blue)
-    for (uint32_t i = 0; i < TILE_GROUPS; i++) {
-        const float value = masked(p->value[i], -((p->is_shared[i] != 0) & (p->weight[i] > 0.0f)));
-        red += value * (normal.x * m[0][0][i] + normal.y * m[0][1][i] + normal.z * m[0][2][i]);
-        green += value * (normal.x * m[1][0][i] + normal.y * m[1][1][i] + normal.z * m[1][2][i]);
-        blue += value * (normal.x * m[2][0][i] + normal.y * m[2][1][i] + normal.z * m[2][2][i]);
-    }
-    const float per_brightness = p->brightness > 0.0f ? 1.0f / p->brightness : 0.0f;
-    p->hue[0] = red * per_brightness;
-    p->hue[1] = green * per_brightness;
-    p->hue[2] = blue * per_brightness;
+    float values[TILE_GROUPS];
+#pragma omp simd
+    for (uint32_t i = 0; i < TILE_GROUPS; i++)
+        values[i] = masked(p->value[i], -((p->is_shared[i] != 0) & (p->weight[i] > 0.0f)));
+    for (int c = 0; c < 3; c++)
+        p->hue[c] = sum_of_tiles(groups->hues[c]);
+    add_along(p->normal, p->tiles->groups.hue, values, p->hue);
+    for (int c = 0; c < 3; c++)
+        p->hue[c] = p->brightness > 0.0f ? p->hue[c] / p->brightness : 0.0f;
 }
 
 static void find_irradiance(point_tiles *p)
 {
-    const float(*m)[3][TILE_GROUPS] = p->tiles->groups.radiance;
-    const vec3 normal = p->normal;
-    float red = 0.0f, green = 0.0f, blue = 0.0f;
-#pragma omp simd reduction(+ : red, green, blue)
-    for (uint32_t i = 0; i < TILE_GROUPS; i++) {
-        red += p->knows_diffuse[i] * (normal.x * m[0][0][i] + normal.y * m[0][1][i] + normal.z * m[0][2][i]);
-        green += p->knows_diffuse[i] * (normal.x * m[1][0][i] + normal.y * m[1][1][i] + normal.z * m[1][2][i]);
-        blue += p->knows_diffuse[i] * (normal.x * m[2][0][i] + normal.y * m[2][1][i] + normal.z * m[2][2][i]);
-    }
-    p->irradiance[0] = red;
-    p->irradiance[1] = green;
-    p->irradiance[2] = blue;
+    memset(p->irradiance, 0, sizeof p->irradiance);
+    add_along(p->normal, p->tiles->groups.radiance, p->knows_diffuse, p->irradiance);
 }
 
 /* Groups that weigh less count as black, so that nothing that know_tiles() divides is subnormal. */
