@@ -101,7 +101,7 @@ if(HELIO_WITH_VULKAN)
         message(FATAL_ERROR "Vulkan was not found: install libvulkan-dev and glslc, or build without it by "
                             "-DHELIO_WITH_VULKAN=OFF.")
     endif()
-    set(SHADERS faults resample resample_large rows marginals faces moments evenness pools tiles tile_light bins greatest
+    set(SHADERS faults resample resample_large rows marginals faces moments evenness pools tiles tile_light bins lobes greatest
         lists draw_lists draw_bins tile_control known control_sums shade shade_tiles background primary list_groups
         raster.vert raster.frag show sky sun)
     include(HeliostatShaders)

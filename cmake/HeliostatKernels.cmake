@@ -5,7 +5,7 @@
 set(KERNEL_SOURCES
     src/cpu/background_kernel.c src/env/exposure_kernel.c src/env/fault_kernel.c src/env/resampling_kernel.c
     src/env/sky_kernel.c src/eval/face_points_kernel.c src/sampling/bins_kernel.c src/sampling/control_kernel.c
-    src/sampling/light_kernel.c
+    src/sampling/light_kernel.c src/sampling/lobe_variance_kernel.c
     src/sampling/point_tiles_kernel.c src/sampling/points_kernel.c
     src/sampling/pools_kernel.c src/sampling/set_kernel.c src/sampling/surface_kernel.c
     src/sampling/tables_kernel.c src/sampling/tiles_kernel.c src/sampling/weigh_kernel.c)

@@ -31,6 +31,7 @@ const bool IS_SOFTWARE = false;
 #include "tables.glsl"
 #include "tiles.glsl"
 #include "brdf.glsl"
+#include "lobe_variance.glsl"
 #include "point.glsl"
 #include "rays.glsl"
 #include "samples.glsl"

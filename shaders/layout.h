@@ -32,6 +32,11 @@
 #define LAYOUT_GROUP_ROWS 6  /* what is known of a group */
 #define LAYOUT_REFINED_PARTS 256 /* POINT_REFINED_PARTS, see point_tiles.h */
 #define LAYOUT_REFINED_TIMES 6
+/* See lobe_variance.h. */
+#define LAYOUT_LOBE_CLASSES 3
+#define LAYOUT_LOBE_SAMPLES_PER_POOL 16
+#define LAYOUT_LOBE_MOST_VARIANCE 1
+
 #define LAYOUT_TILES_MOST (LAYOUT_FACES * LAYOUT_TILES_PER_EDGE * LAYOUT_TILES_PER_EDGE)
 
 /* layout_state.light and .surface: strategy_light and strategy_surface. */
@@ -66,6 +71,7 @@
 #define LAYOUT_STREAM_SURFACE 2
 #define LAYOUT_STREAM_WINDOW 3
 #define LAYOUT_STREAM_BIN 4
+#define LAYOUT_STREAM_LOBE 5
 
 /* helio_wrap, and where the curve of a kind of texture begins among all. */
 #define LAYOUT_WRAP_REPEAT 0
@@ -269,9 +275,11 @@ struct layout_state {
     ADDRESS(uints, tile_sums);     /* [tiles][tile_stride] */
     ADDRESS(floats, segment_densities); /* [6][R][T] */
     ADDRESS(floats, tile_spreads);      /* [tiles] */
+    ADDRESS(floats, tile_angles);       /* [tiles]: sr */
     ADDRESS(vectors, bins);        /* [bins]: direction to the centre, reach */
     ADDRESS(uints, bin_sums);      /* [bins][tiles + 1] */
     ADDRESS(floats, bin_shares);   /* [bins] */
+    ADDRESS(floats, lobe_variances); /* [bins][LAYOUT_LOBE_CLASSES] */
     ADDRESS(floats, greatest);     /* [tiles] */
     ADDRESS(uints, list_starts);   /* [tiles + 1] */
     ADDRESS(vectors, listed);      /* [list_capacity][2]: as in pools, given the tile */
@@ -282,7 +290,7 @@ struct layout_state {
     ADDRESS(vectors, control_sums); /* [bins][chunks + 1][LAYOUT_CONTROL_ROWS] */
     ADDRESS(vectors, groups);  /* [tiles / LAYOUT_TILE_GROUP][LAYOUT_GROUP_ROWS], see tile_groups.h: direction to the
                                   middle, edge; mean direction of the light, light; variance, spread, moment, inner;
-                                  radiance x (x, y, z) */
+                                  radiance x (x, y, z), with peak, angle, nothing */
     UINT size;                     /* R */
     UINT weighting;                /* helio_weighting */
     UINT light, surface;           /* parts of the strategy */
@@ -361,7 +369,7 @@ struct layout_push {
 #ifndef VULKAN
 _Static_assert(sizeof(struct layout_sums) == 176, "as in the shaders");
 _Static_assert(sizeof(struct layout_material) == 48 && sizeof(struct layout_point) == 48, "as in the shaders");
-_Static_assert(sizeof(struct layout_state) == 28 * 8 + 18 * 4, "as in the shaders");
+_Static_assert(sizeof(struct layout_state) == 30 * 8 + 18 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_step) == 16 * 8 + 58 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_map) == 6 * 8 + 6 * 4 + LAYOUT_VIEWS * 20, "as in the shaders");
 _Static_assert(sizeof(struct layout_sky) == 42 * 4 && sizeof(struct layout_sun_texel) == 16, "as in the shaders");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // point.glsl - what a point needs before its first sample: its BRDF in the map's space, expected and realised counts,
 // windows of the pools. As points_kernel.c and estimate.c, in double where these are, so that both take the same samples.
-// Needs brdf.glsl, tiles.glsl and the constants LIGHT and SURFACE.
+// Needs brdf.glsl, tiles.glsl, lobe_variance.glsl and the constants LIGHT and SURFACE.
 
 struct shading_point {
     uint pixel, hit, material_index;
@@ -16,13 +16,14 @@ struct prepared_point {
     float expected[LAYOUT_FACES]; // number of samples
     float surface_expected;
     uint surface_count, surface_seed, bin, seed;
+    bool is_calm; // shines, but need not weigh tiles
 };
 
-// A point that shines reads no pool of a bin, but weighs the tiles itself: in another pass, shade_tiles.comp. Where the
-// light is even the surface has all samples.
+// A point that shines reads no pool of a bin, but weighs the tiles itself: in another pass, shade_tiles.comp; unless the
+// light in its lobe is calm. Where all light is even the surface has all samples.
 bool weighs_tiles(prepared_point p)
 {
-    return LIGHT == LAYOUT_LIGHT_BINS && p.surface_expected > 0.0 && p.expected[0] > 0.0;
+    return LIGHT == LAYOUT_LIGHT_BINS && !p.is_calm && p.surface_expected > 0.0 && p.expected[0] > 0.0;
 }
 
 const uint TECHNIQUES = LIGHT == LAYOUT_LIGHT_FACES ? LAYOUT_FACES : LIGHT == LAYOUT_LIGHT_NONE ? 0u : 1u;
@@ -86,6 +87,30 @@ float surface_share(shading_point p, scene_material m)
     if (SURFACE == LAYOUT_SURFACE_NONE)
         return 0.0;
     return LIGHT == LAYOUT_LIGHT_BINS ? share_of_lobe(p, m) : STEP.brdf_share;
+}
+
+// See class_of_lobe() in estimate.c.
+uint class_of_lobe(scene_material m)
+{
+    const float alpha = m.roughness * m.roughness;
+    if (m.kind == LAYOUT_GGX && m.metallic == 1.0)
+        return lobe_class(alpha * alpha);
+    if (m.kind == LAYOUT_PHONG && !(luminance(m.diffuse) > 0.0))
+        return lobe_class(1.0 / max(m.exponent, 1e-3));
+    return LAYOUT_LOBE_CLASSES;
+}
+
+// See is_calm() in points_kernel.c. Directions in the map's space.
+bool is_calm(scene_material m, vec3 normal, vec3 view, uint seed)
+{
+    if (LIGHT != LAYOUT_LIGHT_BINS || SURFACE != LAYOUT_SURFACE_BRDF || is_even())
+        return false;
+    const uint class_of = class_of_lobe(m), random = hash_combine(seed, LAYOUT_STREAM_LOBE);
+    precise float twice = 2.0 * (normal.x * view.x + normal.y * view.y + normal.z * view.z);
+    precise vec3 mirror = normal * twice - view;
+    const uint cell = bin_of_normal(mirror, random);
+    return class_of < LAYOUT_LOBE_CLASSES && STATE.lobe_variances.at[LAYOUT_LOBE_CLASSES * cell + class_of] <
+                                                 float(LAYOUT_LOBE_MOST_VARIANCE) * (0.5 + unit_float(hash(random)));
 }
 
 // How much, at most, a face can light a surface with this normal: strategy_beta().
@@ -168,7 +193,7 @@ void round_counts(uint seed, inout prepared_point p)
 
 prepared_point prepare_with(shading_point given, scene_material m, uint seed)
 {
-    const vec3 normal = turned(given.normal);
+    const vec3 normal = turned(given.normal), view = lift_view(normal, turned(given.view));
     prepared_point p;
     p.seed = seed;
     for (uint k = 0u; k < LAYOUT_FACES; k++) {
@@ -176,9 +201,10 @@ prepared_point prepare_with(shading_point given, scene_material m, uint seed)
         p.expected[k] = 0.0;
     }
     p.geometric_normal = turned(given.geometric_normal);
-    p.surface = prepare_brdf(m, normal, lift_view(normal, turned(given.view)));
+    p.surface = prepare_brdf(m, normal, view);
     p.bin = LIGHT == LAYOUT_LIGHT_BINS ? bin_of_normal(normal, hash_combine(seed, LAYOUT_STREAM_BIN)) : 0u;
-    expect_counts(normal, surface_share(given, m), p);
+    p.is_calm = is_calm(m, normal, view, seed);
+    expect_counts(normal, p.is_calm ? share_of_need(1.0 - LOBE_POOL_PART) : surface_share(given, m), p);
     round_counts(seed, p);
     p.surface_seed = hash_combine(seed, LAYOUT_STREAM_SURFACE);
     return p;

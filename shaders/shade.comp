@@ -21,6 +21,7 @@ layout(constant_id = 6) const uint VISIBILITY = LAYOUT_SHADOWS_CAST;
 #include "tables.glsl"
 #include "tiles.glsl"
 #include "brdf.glsl"
+#include "lobe_variance.glsl"
 #include "point.glsl"
 #include "film.glsl"
 #include "rays.glsl"

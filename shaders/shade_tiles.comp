@@ -18,6 +18,7 @@ const uint LIGHT = LAYOUT_LIGHT_BINS, SURFACE = LAYOUT_SURFACE_BRDF;
 #include "tables.glsl"
 #include "tiles.glsl"
 #include "brdf.glsl"
+#include "lobe_variance.glsl"
 #include "point.glsl"
 #include "film.glsl"
 #include "rays.glsl"

@@ -7,6 +7,7 @@
 #include "common.glsl"
 #include "fixed_point.glsl"
 #include "scan.glsl"
+#include "lobe_variance.glsl"
 
 shared vec2 parts[gl_WorkGroupSize.x]; // brightness and light
 
@@ -31,11 +32,13 @@ void sum_group_of_tiles(uint group, int exponent)
 {
     const uint end = min((group + 1u) * LAYOUT_TILE_GROUP, STATE.tile_count);
     vec3 sum = vec3(0.0);
-    float light = 0.0, spread = 0.0;
+    float light = 0.0, spread = 0.0, peak = 0.0, angle = 0.0;
     for (uint i = group * LAYOUT_TILE_GROUP; i < end; i++) {
         const float own = light_of(total_at(i), exponent);
         light += own;
         spread += own > 0.0 ? own * STATE.tile_spreads.at[i] : 0.0;
+        peak += own * tile_peak(own, i);
+        angle += STATE.tile_angles.at[i];
         sum += own * STATE.tiles.at[i].xyz;
     }
     const float size = length(sum), part = light > 0.0 ? min(size / light, 1.0) : 1.0;
@@ -47,6 +50,7 @@ void sum_group_of_tiles(uint group, int exponent)
         vec4 radiance = vec4(0.0);
         for (uint i = group * LAYOUT_TILE_GROUP; i < end; i++)
             radiance += STATE.tile_light.at[LAYOUT_CONTROL_ROWS * i + row];
+        radiance.w = row == 0u ? (light > 0.0 ? peak / light : 0.0) : row == 1u ? angle : 0.0;
         STATE.groups.at[LAYOUT_GROUP_ROWS * group + 3u + row] = radiance;
     }
 }

@@ -17,7 +17,7 @@
 
 enum { POOL_LENGTH = 64, SAMPLES = 8, SEEDS = 1200, LARGEST_CUBE = 16, BINS_PER_EDGE = 2 };
 
-/* False alarms: at most 8 strategies x 5 maps x 18 points x 2 tests of |z| < 6, p = 2e-9 each: below 1e-6 in all. */
+/* False alarms: at most 8 strategies x 5 maps x 24 points x 2 tests of |z| < 6, p = 2e-9 each: below 1e-6 in all. */
 static const double LARGEST_Z = 6.0;
 
 static const helio_strategy strategies[] = {
@@ -31,6 +31,8 @@ static const helio_material glossy = {
     .kind = HELIO_MATERIAL_PHONG, .diffuse = {0.5f, 0.4f, 0.3f}, .specular = {0.5f, 0.5f, 0.5f}, .exponent = 20};
 static const helio_material metal = {
     .kind = HELIO_MATERIAL_GGX, .diffuse = {1.0f, 0.8f, 0.3f}, .metallic = 0.7f, .roughness = 0.5f};
+static const helio_material gold = {
+    .kind = HELIO_MATERIAL_GGX, .diffuse = {1.0f, 0.8f, 0.3f}, .metallic = 1.0f, .roughness = 0.45f};
 
 /* ---- maps and points ---- */
 
@@ -84,7 +86,7 @@ static void make_maps(test_map maps[MAPS])
     set_pixel(&maps[4], 1, 4, 4, 500.0f);
 }
 
-enum { NORMALS = 6, MATERIALS = 3, POINTS = NORMALS * MATERIALS };
+enum { NORMALS = 6, MATERIALS = 4, POINTS = NORMALS * MATERIALS };
 
 /* Normals along an axis, along an edge, along a corner and in between; views from above to grazing; one geometric
  * normal that differs from the shading normal. */
@@ -93,7 +95,7 @@ static void make_points(helio_shading_point points[POINTS])
     static const vec3 normals[NORMALS] = {{0, 1, 0},  {0.6f, 0.8f, 0},  {1, 1, 1},
                                           {0, 0, -1}, {-0.2f, 0.3f, 1}, {0.3f, -0.9f, -0.4f}};
     static const float tilts[NORMALS] = {0.0f, 0.5f, 1.0f, 2.0f, 30.0f, 0.3f};
-    const helio_material *materials[MATERIALS] = {&matte, &glossy, &metal};
+    const helio_material *materials[MATERIALS] = {&matte, &glossy, &metal, &gold};
     for (int i = 0; i < POINTS; i++) {
         vec3 normal = normalize(normals[i / MATERIALS]), tangent, bitangent;
         tangent_frame(normal, &tangent, &bitangent);
@@ -477,7 +479,7 @@ static void samples_follow_their_density_for_every_strategy_and_material(void **
 {
     (void)state;
     static test_map maps[MAPS];
-    const helio_material *materials[MATERIALS] = {&matte, &glossy, &metal};
+    const helio_material *materials[MATERIALS] = {&matte, &glossy, &metal, &gold};
     helio_context *context = make_context(1, NULL);
     make_maps(maps);
     for (int s = 0; s < STRATEGIES; s++)

@@ -59,6 +59,18 @@ static void compare_bins(vulkan_world *w)
                        "starts of lists");
 }
 
+static void compare_lobes(vulkan_world *w)
+{
+    const normal_bins *bins = w->pools->bins;
+    const size_t count = (size_t)bins->count * LOBE_CLASSES;
+    float *found = read_buffer(&w->commands, &w->light.lobe_variances, count * sizeof *found);
+    for (size_t i = 0; i < count; i++)
+        if (!is_near(found[i], bins->lobe_variances[i], 4.0f + fabsf(bins->lobe_variances[i])))
+            fail_msg("lobes of bin %zu, class %zu: %g in place of %g", i / LOBE_CLASSES, i % LOBE_CLASSES,
+                     (double)found[i], (double)bins->lobe_variances[i]);
+    free(found);
+}
+
 /* Sums of light in another order: in relation to the largest, as matrices hold differences of much larger numbers. */
 static void compare_matrices(vulkan_world *w, const vulkan_buffer *buffer, const control_matrix *expected, size_t count,
                              const char *what)
@@ -91,6 +103,7 @@ static void compare_light(vulkan_world *w, uint32_t size, helio_weighting weight
         world_update(w, 5 + (uint32_t)kind, size % 3);
         if (w->pools->bins != NULL) {
             compare_bins(w);
+            compare_lobes(w);
             compare_control(w);
         }
         compare_pools(w);

@@ -132,8 +132,9 @@ HELIO_API uint32_t helio_pools_count(const helio_pools *pools);
 HELIO_API uint32_t helio_pools_techniques(const helio_pools *pools);
 HELIO_API uint32_t helio_pools_length(const helio_pools *pools);
 
-/* In PRODUCT_BRDF a point that shines reads no pool: it weighs tiles of the map by light x BRDF x cosine itself, and
- * takes samples from the lists of these tiles. helio_counts then names this as its pool. */
+/* In PRODUCT_BRDF a point that shines mostly reads no pool: it weighs tiles of the map by light x BRDF x cosine itself,
+ * and takes samples from the lists of these tiles. helio_counts then names this as its pool. Where the light in a lobe
+ * that shines alone is calm, a few samples of its bin's pool and many of the BRDF do as well. */
 #define HELIO_POOL_OF_TILES 0xffffffffu
 
 /* How many samples the lists of the tiles hold together in this frame; 0 where there are none. */

@@ -57,13 +57,6 @@ static bool shines(const helio_material *material)
            (material->kind == HELIO_MATERIAL_PHONG && luminance(material->specular) > 0.0f);
 }
 
-/* need is what is best at an even split; any other moves the odds. */
-static float share_of_need(float need, float even)
-{
-    float for_surface = need * even, for_light = (1.0f - need) * (1.0f - even);
-    return for_surface > 0.0f ? for_surface / (for_surface + for_light) : 0.0f;
-}
-
 /* Part of a point's samples that the surface technique takes. Pools of bins hold the product of light and cosine, and
  * tiles that of light and BRDF, so that BRDF samples have only the specular lobe to look after, the more the narrower
  * it is. How many they are begin_tiles() finds; here it matters whether there are any. */
@@ -74,6 +67,19 @@ static float surface_share(const helio_pools *pools, const helio_shading_point *
     if (pools->parts.surface == STRATEGY_SURFACE_NONE)
         return 0.0f;
     return pools->bins == NULL || shines(&point->material) ? desc->brdf_share : 0.0f;
+}
+
+/* Of the lobe, where it is all that reflects. */
+static uint32_t class_of_lobe(const helio_pools *pools, const helio_material *material)
+{
+    if (pools->bins == NULL)
+        return LOBE_UNASKED;
+    const float edge = pools->bins->tiles->edge, alpha = material->roughness * material->roughness;
+    if (material->kind == HELIO_MATERIAL_GGX && material->metallic == 1.0f)
+        return lobe_class(alpha * alpha, edge);
+    if (material->kind == HELIO_MATERIAL_PHONG && !(luminance(material->diffuse) > 0.0f))
+        return lobe_class(1.0f / fmaxf(material->exponent, 1e-3f), edge);
+    return LOBE_UNASKED;
 }
 
 /* Counts and windows of the points, and their directions in the map's space. */
@@ -90,6 +96,7 @@ static void prepare_points(const helio_pools *pools, uint32_t count, const helio
         point_vector_put(&block->view, i, vec3_from(point->view));
         block->seed[i] = point->seed;
         block->surface_share[i] = surface_share(pools, point, desc);
+        block->lobe_class[i] = class_of_lobe(pools, &point->material);
     }
     kernels_of(context_isa(pools->tables->environment->context))->prepare_points(pools, desc, block);
 }
@@ -150,7 +157,7 @@ static void begin_tiles(gathering *g, const helio_estimate_desc *desc, uint32_t 
     if (g->tiles.total == 0) /* as for a bin that is lit, but only below the horizon of this normal */
         return;
     const float need = point_tiles_need(&g->tiles, tile_lobe_need(t, &surface)), samples = (float)desc->samples;
-    g->counts.expected[TECHNIQUE_SURFACE] = samples * share_of_need(need, desc->brdf_share);
+    g->counts.expected[TECHNIQUE_SURFACE] = samples * strategy_share_of_need(need, desc->brdf_share);
     g->counts.expected[0] = samples - g->counts.expected[TECHNIQUE_SURFACE];
     const uint32_t light = (uint32_t)(g->counts.expected[0] + rounding);
     g->counts.realised[0] = light < desc->samples ? light : desc->samples;
@@ -173,7 +180,7 @@ static void begin(gathering *g, const helio_pools *pools, const helio_shading_po
     for (uint32_t k = 0; k < pools->techniques; k++)
         g->windows[k] = block->windows[k][i];
     g->pool = block->pools[0][i];
-    g->has_tiles = pools->bins != NULL && !pools->is_even && block->surface_share[i] > 0.0f;
+    g->has_tiles = block->weighs_tiles[i];
     g->knows_diffuse = g->has_tiles && is_free && !desc->no_control;
     if (g->has_tiles)
         begin_tiles(g, desc, point->seed, block->rounding[i]);

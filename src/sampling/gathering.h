@@ -16,7 +16,7 @@ enum {
 };
 
 /* Streams of random numbers of a point. */
-enum { STREAM_ROUNDING = 1, STREAM_SURFACE, STREAM_WINDOW, STREAM_BIN };
+enum { STREAM_ROUNDING = 1, STREAM_SURFACE, STREAM_WINDOW, STREAM_BIN, STREAM_LOBE };
 
 /* What is known about a point before its samples. All directions are in the map's space. */
 typedef struct gathering {

@@ -42,6 +42,11 @@ typedef struct kernel_set {
      * same bits with every instruction set. */
     uint32_t (*weigh_tiles)(const tiles *t, const normal_bin *bin, uint32_t *sums);
 
+    /* How uneven the light is in lobes of each class about an axis: the variance of one sample of a point in such a
+     * lobe that weighs no tiles, as part of the square of the mean, times the square of the lobe's width in tiles, as
+     * tiles resolve wide lobes better. The same bits with every instruction set. */
+    void (*find_lobe_variances)(const tiles *t, vec3 axis, float variances[LOBE_CLASSES]);
+
     /* The integrals of direction over rows of texels; and adds radiance x these to sums over the columns. rgb:
      * [rows][count][3], rows `stride` floats apart. */
     void (*find_moments)(const struct texel_rows *texels, struct texel_moments *moments);
@@ -135,6 +140,7 @@ _Static_assert(HELIO_LANES <= POOL_PADDING && BLOCK_SAMPLES % HELIO_LANES == 0 &
 
 row_sum KERNEL(sum_row)(const float *rgb, const float *solid_angles, float level, uint32_t size, uint32_t *sums);
 uint32_t KERNEL(weigh_tiles)(const tiles *t, const normal_bin *bin, uint32_t *sums);
+void KERNEL(find_lobe_variances)(const tiles *t, vec3 axis, float variances[LOBE_CLASSES]);
 void KERNEL(find_moments)(const struct texel_rows *texels, struct texel_moments *moments);
 void KERNEL(add_texels)(const struct texel_rows *texels, const float *rgb, size_t stride,
                         const struct texel_moments *moments, struct column_colours *sums);

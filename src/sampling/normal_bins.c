@@ -86,9 +86,10 @@ helio_status normal_bins_create(helio_context *context, uint32_t per_edge, uint3
         b->bins = context_allocate(context, b->count, sizeof *b->bins);
         b->sums = context_allocate(context, b->count, (b->tiles->count + 1) * sizeof *b->sums);
         b->shares = context_allocate(context, b->count, sizeof *b->shares);
+        b->lobe_variances = context_allocate(context, b->count, LOBE_CLASSES * sizeof *b->lobe_variances);
         b->capacity = list_capacity(b);
         b->listed = context_allocate(context, b->capacity, sizeof *b->listed);
-        if (b->bins == NULL || b->sums == NULL || b->shares == NULL || b->listed == NULL)
+        if (b->bins == NULL || b->sums == NULL || b->shares == NULL || b->lobe_variances == NULL || b->listed == NULL)
             status = HELIO_ERR_MEMORY;
     }
     if (status != HELIO_OK) {
@@ -105,6 +106,7 @@ void normal_bins_destroy(normal_bins *b)
     if (b == NULL)
         return;
     context_release(b->context, b->listed);
+    context_release(b->context, b->lobe_variances);
     context_release(b->context, b->shares);
     context_release(b->context, b->sums);
     context_release(b->context, b->bins);
@@ -118,8 +120,10 @@ static void weigh_bin(void *data, size_t bin)
 {
     normal_bins *b = data;
     uint32_t *sums = b->sums + bin * (b->tiles->count + 1);
-    uint32_t total = kernels_of(context_isa(b->context))->weigh_tiles(b->tiles, &b->bins[bin], sums);
+    const kernel_set *kernels = kernels_of(context_isa(b->context));
+    const uint32_t total = kernels->weigh_tiles(b->tiles, &b->bins[bin], sums);
     b->shares[bin] = total != 0 ? 1.0f / (float)total : 0.0f;
+    kernels->find_lobe_variances(b->tiles, b->bins[bin].centre, b->lobe_variances + bin * LOBE_CLASSES);
 }
 
 /* ---- lists ---- */

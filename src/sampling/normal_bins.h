@@ -8,6 +8,7 @@
 #ifndef HELIOSTAT_SRC_NORMAL_BINS_H
 #define HELIOSTAT_SRC_NORMAL_BINS_H
 
+#include "sampling/lobe_variance.h"
 #include "sampling/tiles.h"
 
 enum { NORMAL_BINS_DEFAULT = 8, NORMAL_BINS_MOST = 32 };
@@ -37,13 +38,14 @@ typedef struct listed_sample {
 typedef struct normal_bins {
     helio_context *context;
     tiles *tiles;
-    uint32_t per_edge; /* B */
-    uint32_t count;    /* 6 B^2 */
-    float shake;       /* see normal_bins_shaken() */
-    normal_bin *bins;  /* [count] */
-    uint32_t *sums;    /* [count][tiles + 1]: prefix sums of the weights of the tiles, in their order */
-    float *shares;     /* [count]: 1 / the sum of all, or 0 */
-    uint64_t frame;    /* of the tables, when weighed */
+    uint32_t per_edge;     /* B */
+    uint32_t count;        /* 6 B^2 */
+    float shake;           /* see normal_bins_shaken() */
+    normal_bin *bins;      /* [count] */
+    uint32_t *sums;        /* [count][tiles + 1]: prefix sums of the weights of the tiles, in their order */
+    float *shares;         /* [count]: 1 / the sum of all, or 0 */
+    float *lobe_variances; /* [count][LOBE_CLASSES]: of lobes about the centre of each */
+    uint64_t frame;        /* of the tables, when weighed */
     /* Samples of each tile, from which all pools are made. A list is a few times as long as what any pool takes from
      * it. [starts[count of tiles]], at most `capacity`. */
     uint32_t pool_length, capacity;

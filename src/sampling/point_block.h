@@ -24,6 +24,8 @@ typedef struct point_block {
     point_vectors normal, geometric_normal, view; /* in world space, until a kernel turns them to the map's */
     alignas(64) uint32_t seed[POINT_BLOCK];
     alignas(64) float surface_share[POINT_BLOCK]; /* part of its samples that the surface technique takes */
+    alignas(64) uint32_t lobe_class[POINT_BLOCK]; /* see lobe_variance.h */
+    bool weighs_tiles[POINT_BLOCK];               /* in place of reading pools of bins */
     /* How each divides its samples among the techniques, see helio_counts. */
     alignas(64) float expected[TECHNIQUES][POINT_BLOCK];
     alignas(64) float rounding[POINT_BLOCK]; /* where systematic rounding starts, in [0, 1) */

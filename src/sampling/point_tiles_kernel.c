@@ -3,6 +3,7 @@
  * A shiny point's own density over the tiles, and samples from it. */
 #include "sampling/fixed_point.h"
 #include "sampling/kernels.h"
+#include "sampling/tile_sums.h"
 #include "sampling/tile_tree.h"
 
 #include <string.h>
@@ -82,45 +83,11 @@ static inline __attribute__((always_inline)) void look_at_groups(helio_material_
     }
 }
 
-/* Sums in an order that is the same for all instruction sets: over groups, and over the tiles of one. */
-static inline float sum_of_tiles(const float *values)
-{
-    float eight[8], four[4];
-#pragma omp simd
-    for (uint32_t i = 0; i < 8; i++)
-        eight[i] = values[i] + values[i + 8];
-#pragma omp simd
-    for (uint32_t i = 0; i < 4; i++)
-        four[i] = eight[i] + eight[i + 4];
-    return (four[0] + four[2]) + (four[1] + four[3]);
-}
-
-static inline float sum_of_groups(const float *values)
-{
-    float runs[TILE_RUN];
-    _Static_assert((int)TILE_RUN == (int)TILE_GROUP && (int)TILE_RUNS == 6, "six sums of sixteen");
-#pragma omp simd
-    for (uint32_t i = 0; i < TILE_RUN; i++)
-        runs[i] =
-            ((values[i] + values[i + 16]) + (values[i + 32] + values[i + 48])) + (values[i + 64] + values[i + 80]);
-    return sum_of_tiles(runs);
-}
-
 /* ---- tiles ---- */
 
 /* Of a group that is not black: then a tile has a weight of at least the number of tiles, so that each of the others,
  * however dark, can have 1 or more. */
 enum { POINT_LEAST_WEIGHT = TILE_GROUP * TILE_GROUP };
-
-/* Which of the groups of a run, or of the tiles of a group, are true, as bits. */
-static inline uint32_t bits_of(const int32_t *truths)
-{
-    uint32_t bits = 0;
-#pragma omp simd reduction(| : bits)
-    for (uint32_t i = 0; i < TILE_RUN; i++)
-        bits |= (truths[i] != 0) << i;
-    return bits;
-}
 
 /* What the tiles of a group that has been looked at weigh together, and their hues. */
 static inline void add_tiles(const tiles *t, uint32_t group, group_lobes *restrict groups, point_tiles *restrict p)

@@ -56,6 +56,33 @@ static void choose_pools(const helio_pools *pools, point_block *block)
     }
 }
 
+/* ---- lobes ---- */
+
+/* The mirror image of the view is shaken before it looks for its cell, as the normal is for pools; and where what is
+ * found there is nearly too much chance decides. So no edge shows. */
+static bool is_calm(const normal_bins *bins, const point_block *block, uint32_t i)
+{
+    const uint32_t random = hash_combine(block->seed[i], STREAM_LOBE);
+    const vec3 normal = point_vector(&block->normal, i), view = point_vector(&block->view, i);
+    const vec3 mirror = add_scaled(scale(view, -1.0f), normal, 2.0f * dot(normal, view));
+    const uint32_t cell = normal_bins_cell(bins->per_edge, normal_bins_shaken(bins, mirror, random));
+    const float variance = bins->lobe_variances[cell * LOBE_CLASSES + block->lobe_class[i]];
+    return variance < (float)LOBE_MOST_VARIANCE * (0.5f + unit_float(hash(random)));
+}
+
+/* Which points weigh tiles. They find the surface's share later, those in calm lobes have it here. */
+static void look_at_lobes(const helio_pools *pools, float brdf_share, point_block *block)
+{
+    const bool has_tiles = pools->bins != NULL && !pools->is_even;
+    for (uint32_t i = 0; i < block->count; i++) {
+        block->weighs_tiles[i] = has_tiles && block->surface_share[i] > 0.0f;
+        if (!block->weighs_tiles[i] || block->lobe_class[i] == LOBE_UNASKED || !is_calm(pools->bins, block, i))
+            continue;
+        block->weighs_tiles[i] = false;
+        block->surface_share[i] = strategy_share_of_need(1.0f - LOBE_POOL_PART, brdf_share);
+    }
+}
+
 /* ---- expected counts ---- */
 
 /* What the pools are worth to a point. In double, as the flux of a dark map may be less than a float can hold. */
@@ -190,6 +217,7 @@ void KERNEL(prepare_points)(const helio_pools *pools, const helio_estimate_desc 
     turn(environment, count, &block->view);
     lift_views(block);
     choose_pools(pools, block);
+    look_at_lobes(pools, desc->brdf_share, block);
     expect_counts(pools, desc, block);
 #pragma omp simd
     for (uint32_t i = 0; i < count; i++)

@@ -6,6 +6,7 @@
 const kernel_set KERNEL(kernels) = {
     .sum_row = KERNEL(sum_row),
     .weigh_tiles = KERNEL(weigh_tiles),
+    .find_lobe_variances = KERNEL(find_lobe_variances),
     .find_moments = KERNEL(find_moments),
     .add_texels = KERNEL(add_texels),
     .sum_columns = KERNEL(sum_columns),

@@ -56,4 +56,11 @@ static inline void strategy_betas(vec3 normal, float betas[6])
     betas[5] = strategy_beta(-normal.z, normal.x, normal.y);
 }
 
+/* need is what is best at an even split; any other moves the odds. */
+static inline float strategy_share_of_need(float need, float even)
+{
+    float for_surface = need * even, for_light = (1.0f - need) * (1.0f - even);
+    return for_surface > 0.0f ? for_surface / (for_surface + for_light) : 0.0f;
+}
+
 #endif

@@ -17,8 +17,10 @@ static void place_group(tiles *t, uint32_t group)
     const uint32_t first = group * TILE_GROUP, end = first + TILE_GROUP < t->count ? first + TILE_GROUP : t->count;
     vec3 sum = {0, 0, 0};
     float least = 1.0f;
-    for (uint32_t i = first; i < end; i++)
+    for (uint32_t i = first; i < end; i++) {
         sum = add(sum, centre_of(t, i));
+        groups->angle[group] += t->angle[i];
+    }
     vec3 middle = dot(sum, sum) > 1e-6f ? normalize(sum) : (vec3){1, 0, 0}; /* opposite faces, where T is 1 */
     for (uint32_t i = first; i < end; i++)
         least = fminf(least, dot(middle, centre_of(t, i)));
@@ -42,10 +44,11 @@ static void sum_group(tiles *t, uint32_t group)
 {
     tile_groups *groups = &t->groups;
     vec3 sum = {0, 0, 0};
-    float light = 0.0f, spread = 0.0f;
+    float light = 0.0f, spread = 0.0f, peak = 0.0f;
     for (uint32_t i = group * TILE_GROUP; i < (group + 1) * TILE_GROUP; i++) {
         light += t->light[i];
         spread += t->light[i] * t->spread[i];
+        peak += t->light[i] * t->peak[i];
         sum = add_scaled(sum, centre_of(t, i), t->light[i]);
     }
     const float length = sqrtf(dot(sum, sum)), part = light > 0.0f ? fminf(length / light, 1.0f) : 1.0f;
@@ -57,6 +60,7 @@ static void sum_group(tiles *t, uint32_t group)
     groups->moment[group] = length;
     groups->variance[group] = 1.0f - part * part;
     groups->spread[group] = light > 0.0f ? spread / light : 0.0f;
+    groups->peak[group] = light > 0.0f ? peak / light : 0.0f;
 }
 
 static void sum_colour(tiles *t, uint32_t group, int c)

@@ -27,6 +27,7 @@ typedef struct tile_groups {
     alignas(64) float slope[TILE_GROUPS]; /* 1 / (4 edge) */
     alignas(64) float inner[TILE_GROUPS]; /* of one whose cosine is at least this, the centres of all tiles are above
                                              the horizon; 2 where they are too far apart */
+    alignas(64) float angle[TILE_GROUPS]; /* sum of tiles.angle */
     /* Of a frame. */
     alignas(64) float light[TILE_GROUPS];   /* sum of tiles.light */
     alignas(64) float light_x[TILE_GROUPS]; /* its mean direction, of unit length */
@@ -38,6 +39,7 @@ typedef struct tile_groups {
                                                       them of tiles */
     alignas(64) float variance[TILE_GROUPS]; /* of the directions to its tiles about that, rad^2 for small angles */
     alignas(64) float spread[TILE_GROUPS];   /* mean of tiles.spread */
+    alignas(64) float peak[TILE_GROUPS];     /* ... and of tiles.peak, each by its light */
 } tile_groups;
 
 /* Finds where they are; the tiles' places must be there. */

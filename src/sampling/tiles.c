@@ -51,6 +51,14 @@ static float tile_radius(const tiles *t, uint32_t row, uint32_t column)
     return acosf(least);
 }
 
+static float tile_angle(const tiles *t, uint32_t row, uint32_t column)
+{
+    const double scale = 2.0 / (double)t->size;
+    const uint32_t *starts = t->starts;
+    return (float)cube_solid_angle(starts[column] * scale - 1.0, starts[column + 1] * scale - 1.0,
+                                   starts[row] * scale - 1.0, starts[row + 1] * scale - 1.0);
+}
+
 static void place_tile(tiles *t, uint32_t position, uint32_t face, uint32_t row, uint32_t column)
 {
     uint32_t grid = (face * t->per_edge + row) * t->per_edge + column;
@@ -60,6 +68,7 @@ static void place_tile(tiles *t, uint32_t position, uint32_t face, uint32_t row,
     t->x[position] = centre.x;
     t->y[position] = centre.y;
     t->z[position] = centre.z;
+    t->angle[position] = tile_angle(t, row, column);
     t->radius = fmaxf(t->radius, tile_radius(t, row, column));
 }
 
@@ -203,6 +212,8 @@ static void find_light(tiles *t)
     for (uint32_t i = 0; i < t->count; i++) {
         double light = ldexp(value_of(t->totals[i]), -exponent);
         t->light[i] = light > 0.0 ? (float)fmax(light, LEAST_LIGHT) : 0.0f;
+        const float part = t->spread[i] / t->radius;
+        t->peak[i] = t->light[i] / (t->angle[i] * (part * part));
     }
 }
 

@@ -34,10 +34,13 @@ typedef struct tiles {
     alignas(64) float x[TILES_MOST];     /* [count]: direction to the centre of the tile at a position */
     alignas(64) float y[TILES_MOST];
     alignas(64) float z[TILES_MOST];
+    alignas(64) float angle[TILES_MOST];  /* [count]: solid angle of each, sr */
     alignas(64) float light[TILES_MOST];  /* [count]: the tables' weight, in proportion; 2^-60 to 1, or 0 */
     row_sum totals[TILES_MOST];           /* [count]: the same exactly */
     alignas(64) float spread[TILES_MOST]; /* [count]: angle that the light of a tile takes: its radius, or the part of
                                              it that even light would need; small where there is a sun */
+    alignas(64) float peak[TILES_MOST];   /* [count]: mean of the light per sr, each part by the light itself, supposed
+                                             that it is spread across the tile as it is along it */
     tile_colours colours;
     tile_groups groups;
     uint32_t *sums;           /* [count][stride]: prefix sums over the rows of a tile */

@@ -14,6 +14,10 @@ _Static_assert((int)LAYOUT_TILE_GROUP == (int)TILE_GROUP && (int)LAYOUT_TILE_RUN
                    (int)LAYOUT_TILES_MOST == (int)TILES_MOST && (int)LAYOUT_REFINED_PARTS == (int)POINT_REFINED_PARTS &&
                    (int)LAYOUT_REFINED_TIMES == (int)POINT_REFINED_TIMES,
                "as in tiles.h and point_tiles.h");
+_Static_assert((int)LAYOUT_LOBE_CLASSES == (int)LOBE_CLASSES &&
+                   (int)LAYOUT_LOBE_MOST_VARIANCE == (int)LOBE_MOST_VARIANCE &&
+                   (int)LAYOUT_LOBE_SAMPLES_PER_POOL == (int)LOBE_SAMPLES_PER_POOL,
+               "as in lobe_variance.h");
 
 /* ---- creation ----------------------------------------------------------------------------- */
 
@@ -36,12 +40,14 @@ static helio_status create_buffers(vulkan_light *light)
         {&light->tile_sums, BUFFER_ON_DEVICE, (uint64_t)t->count * t->stride, sizeof(uint32_t), "the rows of tiles"},
         {&light->segment_densities, BUFFER_ON_DEVICE, segments, sizeof(float), "the densities of tiles"},
         {&light->tile_spreads, BUFFER_ON_DEVICE, t->count, sizeof(float), "the spreads of tiles"},
+        {&light->tile_angles, BUFFER_ON_DEVICE, t->count, sizeof(float), "the angles of tiles"},
         {&light->groups, BUFFER_ON_DEVICE, t->groups.count, LAYOUT_GROUP_ROWS * 4 * sizeof(float),
          "the groups of tiles"},
         {&light->bins, BUFFER_ON_DEVICE, bins->count, 4 * sizeof(float), "the bins"},
         {&light->bin_sums, BUFFER_ON_DEVICE, (uint64_t)bins->count * (t->count + 1), sizeof(uint32_t),
          "the sums of bins"},
         {&light->bin_shares, BUFFER_ON_DEVICE, bins->count, sizeof(float), "the shares of bins"},
+        {&light->lobe_variances, BUFFER_ON_DEVICE, bins->count, LOBE_CLASSES * sizeof(float), "the light in lobes"},
         {&light->greatest, BUFFER_ON_DEVICE, t->count, sizeof(float), "the probabilities of tiles"},
         {&light->list_starts, BUFFER_ON_DEVICE, t->count + 1, sizeof(uint32_t), "the lengths of lists"},
         {&light->moments, BUFFER_ON_DEVICE, is_automatic(light) ? t->count : 0, 3 * sizeof(double),
@@ -67,6 +73,8 @@ static void tell(vulkan_light *light)
     state->tile_sums = light->tile_sums.address;
     state->segment_densities = light->segment_densities.address;
     state->tile_spreads = light->tile_spreads.address;
+    state->tile_angles = light->tile_angles.address;
+    state->lobe_variances = light->lobe_variances.address;
     state->bins = light->bins.address;
     state->bin_sums = light->bin_sums.address;
     state->bin_shares = light->bin_shares.address;
@@ -109,6 +117,7 @@ static helio_status create_passes(vulkan_light *light)
         {PASS_TILES, {"tiles", 1, {threads < THREADS_OF_TILE ? threads : THREADS_OF_TILE}}},
         {PASS_TILE_LIGHT, {"tile_light", 1, {threads}}},
         {PASS_BINS, {"bins", 1, {threads}}},
+        {PASS_LOBES, {"lobes", 1, {threads}}},
         {PASS_GREATEST, {"greatest", 1, {THREADS}}},
         {PASS_LISTS, {"lists", 1, {threads}}},
         {PASS_DRAW_LISTS, {"draw_lists", 1, {THREADS}}},
@@ -125,7 +134,7 @@ static helio_status create_passes(vulkan_light *light)
 /* Where tiles and bins lie, as the shaders have it. */
 typedef struct geometry {
     uint32_t grid[TILES_MOST], positions[TILES_MOST];
-    float tiles[TILES_MOST][4];
+    float tiles[TILES_MOST][4], angles[TILES_MOST];
     float groups[TILE_GROUPS][LAYOUT_GROUP_ROWS][4];
     float bins[CUBE_FACES * NORMAL_BINS_MOST * NORMAL_BINS_MOST][4];
 } geometry;
@@ -139,6 +148,7 @@ static void fill_geometry(const normal_bins *bins, geometry *g)
         g->tiles[i][0] = t->x[i];
         g->tiles[i][1] = t->y[i];
         g->tiles[i][2] = t->z[i];
+        g->angles[i] = t->angle[i];
     }
     for (uint32_t i = 0; i < t->groups.count; i++) {
         vec3_to((vec3){t->groups.x[i], t->groups.y[i], t->groups.z[i]}, g->groups[i][0]);
@@ -157,6 +167,7 @@ static helio_status upload_geometry(vulkan_light *light, vulkan_commands *comman
     HELIO_TRY(commands_upload(commands, &light->tile_grid, g->grid, tile_count * sizeof *g->grid));
     HELIO_TRY(commands_upload(commands, &light->tile_positions, g->positions, tile_count * sizeof *g->positions));
     HELIO_TRY(commands_upload(commands, &light->tiles, g->tiles, tile_count * sizeof *g->tiles));
+    HELIO_TRY(commands_upload(commands, &light->tile_angles, g->angles, tile_count * sizeof *g->angles));
     HELIO_TRY(commands_upload(commands, &light->groups, g->groups,
                               light->shape->bins->tiles->groups.count * sizeof *g->groups));
     return commands_upload(commands, &light->bins, g->bins, bin_count * sizeof *g->bins);
@@ -205,6 +216,7 @@ static void record_weights(vulkan_light *light, vulkan_commands *commands)
     commands_barrier(commands);
     commands_dispatch(commands, light->passes[PASS_KNOWN], &push, (state->bin_count + at_once - 1) / at_once);
     commands_dispatch(commands, light->passes[PASS_BINS], &push, state->bin_count);
+    commands_dispatch(commands, light->passes[PASS_LOBES], &push, state->bin_count);
     commands_barrier(commands);
     commands_dispatch(commands, light->passes[PASS_GREATEST], &greatest, groups(state->tile_count));
     commands_barrier(commands);

@@ -91,20 +91,21 @@ void light_destroy(vulkan_light *light)
     if (light->device == NULL)
         return;
     map_destroy(&light->map);
-    vulkan_buffer *const all[] = {&light->solid_angles, &light->rows,
-                                  &light->marginals,    &light->row_densities,
-                                  &light->weights,      &light->fluxes,
-                                  &light->sums,         &light->pools,
-                                  &light->tile_grid,    &light->tile_positions,
-                                  &light->tiles,        &light->tile_totals,
-                                  &light->tile_sums,    &light->segment_densities,
-                                  &light->tile_spreads, &light->bins,
-                                  &light->bin_sums,     &light->bin_shares,
-                                  &light->greatest,     &light->list_starts,
-                                  &light->listed,       &light->moments,
-                                  &light->groups,       &light->tile_light,
-                                  &light->tile_hues,    &light->known,
-                                  &light->control_sums, NULL};
+    vulkan_buffer *const all[] = {&light->solid_angles,   &light->rows,
+                                  &light->marginals,      &light->row_densities,
+                                  &light->weights,        &light->fluxes,
+                                  &light->sums,           &light->pools,
+                                  &light->tile_grid,      &light->tile_positions,
+                                  &light->tiles,          &light->tile_totals,
+                                  &light->tile_sums,      &light->segment_densities,
+                                  &light->tile_spreads,   &light->bins,
+                                  &light->bin_sums,       &light->bin_shares,
+                                  &light->greatest,       &light->list_starts,
+                                  &light->listed,         &light->moments,
+                                  &light->groups,         &light->tile_light,
+                                  &light->tile_hues,      &light->known,
+                                  &light->control_sums,   &light->tile_angles,
+                                  &light->lobe_variances, NULL};
     buffers_destroy(light->device, all);
     for (int i = 0; i < LIGHT_SLOTS; i++)
         destroy_slot(light->device, &light->slots[i]);

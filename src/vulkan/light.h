@@ -20,6 +20,7 @@ typedef enum light_pass {
     PASS_TILES,
     PASS_TILE_LIGHT,
     PASS_BINS,
+    PASS_LOBES,
     PASS_GREATEST,
     PASS_LISTS,
     PASS_DRAW_LISTS,
@@ -55,7 +56,7 @@ typedef struct vulkan_light {
     vulkan_buffer pools;
     /* Of bins of normals; nothing for other strategies. */
     vulkan_buffer tile_grid, tile_positions, tiles, tile_totals, tile_sums, segment_densities, tile_spreads;
-    vulkan_buffer groups;
+    vulkan_buffer groups, tile_angles, lobe_variances;
     vulkan_buffer moments; /* where the strategy may be left */
     vulkan_buffer bins, bin_sums, bin_shares, greatest, list_starts, listed;
     vulkan_buffer tile_light, tile_hues, known, control_sums;

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// lobe_variance.glsl - how uneven the light in a specular lobe is: as lobe_variance.h.
+
+const float LOBE_POOL_PART = 1.0 / float(LAYOUT_LOBE_SAMPLES_PER_POOL);
+
+// GGX's alpha^2 of the lobes of a class, widened by a tile, in relation to the square of tile_edge.
+float lobe_class_width(uint class_of_lobe)
+{
+    return float(1u << class_of_lobe);
+}
+
+// Of lobes that shine alone. alpha2: GGX's alpha^2, or 1 / exponent.
+uint lobe_class(float alpha2)
+{
+    const float width = alpha2 / (STATE.tile_edge * STATE.tile_edge) + 1.0;
+    return (width >= 1.4 ? 1u : 0u) + (width >= 2.8 ? 1u : 0u) + (width >= 5.6 ? 1u : 0u);
+}
+
+// tiles.peak. light: of the tile.
+float tile_peak(float light, uint position)
+{
+    const float part = STATE.tile_spreads.at[position] / STATE.tile_radius;
+    return light > 0.0 ? light / (STATE.tile_angles.at[position] * (part * part)) : 0.0;
+}

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * How uneven the light is in lobes about one direction. */
+#include "sampling/kernels.h"
+#include "sampling/tile_sums.h"
+
+#include <string.h>
+
+/* Groups whose middle is nearer to the axis are looked at tile by tile, others as a whole: cos 35 degrees. */
+static const float NEAR_COSINE = 0.82f;
+
+/* Of lobe_at() over all directions. */
+static const float LOBE_INTEGRAL = 4.0f * (float)PI;
+
+/* A lobe, and the samples of a point in it: the lobe's part of them over the lobe's integral, the pool's part over the
+ * pool's light. */
+typedef struct sampled_lobe {
+    vec3 axis;
+    float width;
+    float by_lobe, by_pool;
+} sampled_lobe;
+
+/* In sixteen sums each. */
+typedef struct lobe_sums {
+    alignas(64) float angle[TILE_GROUP];  /* the lobe */
+    alignas(64) float light[TILE_GROUP];  /* lobe x light */
+    alignas(64) float square[TILE_GROUP]; /* (lobe x light)^2 / density of the samples */
+} lobe_sums;
+
+/* Sixteen parts of the sky that follow each other. */
+typedef struct sky_parts {
+    const float *x, *y, *z, *angle, *light, *peak;
+    const float *variance; /* of the directions in each, where that is more than a tile's; else NULL */
+} sky_parts;
+
+static inline float cosine_to(vec3 axis, const sky_parts *parts, uint32_t i)
+{
+    return axis.x * parts->x[i] + axis.y * parts->y[i] + axis.z * parts->z[i];
+}
+
+/* GGX's distribution x pi for the direction half-way between light and an axis that is normal and view at once. */
+static inline float lobe_at(float cosine, float width)
+{
+    const float rest = 1.0f - 0.5f * (1.0f + cosine) * (1.0f - width);
+    return width / (rest * rest);
+}
+
+/* counted: 1 or 0. */
+static inline __attribute__((always_inline)) void add_parts(const sampled_lobe *given, const sky_parts *of_sky,
+                                                            const float *restrict counted, lobe_sums *restrict sums)
+{
+    const sampled_lobe lobe = *given;
+    const sky_parts parts = *of_sky;
+#pragma omp simd
+    for (uint32_t i = 0; i < TILE_GROUP; i++) {
+        const float width = lobe.width + (parts.variance != NULL ? parts.variance[i] : 0.0f);
+        const float value = counted[i] * lobe_at(cosine_to(lobe.axis, &parts, i), width);
+        const float light = value * parts.light[i], peak = parts.peak[i];
+        const float density = lobe.by_lobe * value + lobe.by_pool * peak;
+        sums->angle[i] += value * parts.angle[i];
+        sums->light[i] += light;
+        sums->square[i] += density > 0.0f ? light * value * peak / density : 0.0f;
+    }
+}
+
+static void add_tiles(const sampled_lobe *lobe, const tiles *t, uint32_t group, lobe_sums *sums)
+{
+    static const float all[TILE_GROUP] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+    const uint32_t first = group * TILE_GROUP;
+    const sky_parts parts = {.x = t->x + first,
+                             .y = t->y + first,
+                             .z = t->z + first,
+                             .angle = t->angle + first,
+                             .light = t->light + first,
+                             .peak = t->peak + first};
+    add_parts(lobe, &parts, all, sums);
+}
+
+/* Of a run of groups those that are far, and the tiles of the others. */
+static void add_run(const sampled_lobe *lobe, const tiles *t, uint32_t first, lobe_sums *sums)
+{
+    const tile_groups *g = &t->groups;
+    const sky_parts middles = {.x = g->x + first, .y = g->y + first, .z = g->z + first};
+    const sky_parts parts = {.x = g->light_x + first,
+                             .y = g->light_y + first,
+                             .z = g->light_z + first,
+                             .angle = g->angle + first,
+                             .light = g->light + first,
+                             .peak = g->peak + first,
+                             .variance = g->variance + first};
+    int32_t is_near[TILE_RUN];
+    float is_far[TILE_RUN];
+#pragma omp simd
+    for (uint32_t i = 0; i < TILE_RUN; i++) {
+        is_near[i] = cosine_to(lobe->axis, &middles, i) > NEAR_COSINE;
+        is_far[i] = is_near[i] ? 0.0f : 1.0f;
+    }
+    add_parts(lobe, &parts, is_far, sums);
+    for (uint32_t rest = bits_of(is_near); rest != 0; rest &= rest - 1)
+        add_tiles(lobe, t, first + (uint32_t)__builtin_ctz(rest), sums);
+}
+
+/* 0 under a black sky. */
+static float find_variance(const sampled_lobe *lobe, const tiles *t)
+{
+    lobe_sums sums;
+    memset(&sums, 0, sizeof sums);
+    for (uint32_t run = 0; run < TILE_RUNS; run++)
+        add_run(lobe, t, run * TILE_RUN, &sums);
+    const float light = sum_of_tiles(sums.light), square = sum_of_tiles(sums.square);
+    if (!(light > 0.0f))
+        return 0.0f;
+    return square / light * (sum_of_tiles(sums.angle) / LOBE_INTEGRAL) / light - 1.0f;
+}
+
+void KERNEL(find_lobe_variances)(const tiles *t, vec3 axis, float variances[LOBE_CLASSES])
+{
+    const float irradiance = 0.5f * sum_of_groups(t->groups.light); /* of a surface that faces most of it */
+    for (uint32_t class = 0; class < LOBE_CLASSES; class ++) {
+        const float times = lobe_class_width(class);
+        const sampled_lobe lobe = {.axis = axis,
+                                   .width = times * t->edge * t->edge,
+                                   .by_lobe = (1.0f - LOBE_POOL_PART) / LOBE_INTEGRAL,
+                                   .by_pool = irradiance > 0.0f ? LOBE_POOL_PART / irradiance : 0.0f};
+        variances[class] = times * find_variance(&lobe, t);
+    }
+}
