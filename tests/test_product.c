@@ -600,6 +600,20 @@ static void points_weigh_every_tile_that_can_light_them(void **state)
     }
 }
 
+/* In registers as in the table, for cubes of all sizes. */
+static void lines_of_texels_are_in_their_tiles(void **state)
+{
+    (void)state;
+    for (uint32_t size = 1; size <= CUBE_MAX_SIZE; size = size < 600 ? size + 1 : size * 9 / 8 + 1) {
+        const uint32_t per_edge = size < TILES_PER_EDGE ? size : TILES_PER_EDGE;
+        for (uint32_t k = 0; k < per_edge; k++)
+            for (uint32_t line = k * size / per_edge; line < (k + 1) * size / per_edge; line++)
+                if (tiles_of_line(per_edge, 1.0f / (float)size, line) != k)
+                    fail_msg("R = %u: line %u is in tile %u, not %u", size, line, k,
+                             tiles_of_line(per_edge, 1.0f / (float)size, line));
+    }
+}
+
 /* Light x cosine of a tile that is above the horizon, as all are of a group that shares its lobe. */
 static double light_above(const tiles *t, vec3 normal, uint32_t position)
 {
@@ -802,6 +816,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tiles_divide_each_face_and_follow_a_curve),
+        cmocka_unit_test(lines_of_texels_are_in_their_tiles),
         cmocka_unit_test(the_light_of_tiles_is_that_of_their_texels),
         cmocka_unit_test(densities_integrate_to_one),
         cmocka_unit_test(densities_are_positive_for_every_normal_that_may_choose_the_bin),

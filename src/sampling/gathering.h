@@ -49,7 +49,10 @@ typedef struct surface_aim {
     uint32_t count;
     float x[BLOCK_SAMPLES], y[BLOCK_SAMPLES], z[BLOCK_SAMPLES];
     uint32_t face[BLOCK_SAMPLES], row[BLOCK_SAMPLES], column[BLOCK_SAMPLES];
+    uint32_t line[BLOCK_SAMPLES];     /* the row, counted through all faces */
     uint32_t index[BLOCK_SAMPLES];    /* of all texels */
+    uint32_t tile[BLOCK_SAMPLES];     /* its position; where it is wanted, of bins; and so what follows */
+    uint32_t segment[BLOCK_SAMPLES];  /* see tiles_segment() */
     uint32_t mirrored[BLOCK_SAMPLES]; /* of the solid angle, see texel_weight.h */
     float u[BLOCK_SAMPLES], v[BLOCK_SAMPLES];
 } surface_aim;

@@ -44,6 +44,7 @@ static void find_texels(const gathering *g, uint32_t begin, uint32_t end, surfac
         const uint32_t row = cube_texel(at.v, size), column = cube_texel(at.u, size);
         to->row[i] = row;
         to->column[i] = column;
+        to->line[i] = at.face * size + row;
         to->index[i] = (at.face * size + row) * size + column;
         to->mirrored[i] = texel_mirrored(size, row, column);
     }
@@ -62,24 +63,47 @@ static bool has_light_techniques(const gathering *g)
     return expected > 0.0f;
 }
 
+static inline __attribute__((always_inline)) void find_tiles(const tiles *t, uint32_t begin, uint32_t end,
+                                                             surface_aim *aim)
+{
+    const uint32_t per_edge = t->per_edge;
+    const float per_texel = 1.0f / (float)t->size;
+    surface_aim *restrict to = aim;
+#pragma omp simd
+    for (uint32_t i = begin; i < end; i++) {
+        const uint32_t row = tiles_of_line(per_edge, per_texel, to->row[i]);
+        const uint32_t column = tiles_of_line(per_edge, per_texel, to->column[i]);
+        to->tile[i] = (to->face[i] * per_edge + row) * per_edge + column;
+        to->segment[i] = to->line[i] * per_edge + column;
+    }
+    for (uint32_t i = begin; i < end; i++)
+        aim->tile[i] = t->positions[aim->tile[i]];
+}
+
 /* Texels are in no near cache, and where a sample goes no processor can guess: all are sent for before the first is
  * waited for. Some end in the next line of the cache. Inlined, as compilers leave out functions that only send. */
-static inline __attribute__((always_inline)) void fetch_ahead(const gathering *g, uint32_t begin, uint32_t end,
-                                                              const surface_aim *aim)
+static inline __attribute__((always_inline)) void fetch_texels(const gathering *g, uint32_t begin, uint32_t end,
+                                                               const surface_aim *aim)
 {
-    const bool has_light = has_light_techniques(g), has_tiles = g->has_tiles;
     for (uint32_t i = begin; i < end; i++) {
         const float *rgb = texel_at(g, aim, i);
         __builtin_prefetch(rgb);
         if (((uintptr_t)rgb & 63) > 52)
             __builtin_prefetch(rgb + 2);
-        if (has_light)
-            __builtin_prefetch(g->environment->solid_angle + aim->mirrored[i]);
-        if (has_tiles) { /* what other strategies look up is small */
-            const face_place at = {aim->face[i], aim->row[i], aim->column[i], aim->u[i], aim->v[i]};
-            __builtin_prefetch(tiles_unit_density_at(g->pools->bins->tiles, &at));
-            __builtin_prefetch(&g->pools->tables->row_sums[(size_t)at.face * g->environment->size + at.row]);
-        }
+    }
+}
+
+/* What densities are made of. Of other strategies than those with bins that is small, but for solid angles. */
+static inline __attribute__((always_inline)) void fetch_densities(const gathering *g, uint32_t begin, uint32_t end,
+                                                                  const surface_aim *aim)
+{
+    const float *solid_angles = g->environment->solid_angle;
+    const normal_bins *bins = g->pools->bins;
+    for (uint32_t i = begin; i < end; i++)
+        __builtin_prefetch(solid_angles + aim->mirrored[i]);
+    for (uint32_t i = begin; i < end && bins != NULL; i++) {
+        __builtin_prefetch(bins->tiles->segment_densities + aim->segment[i]);
+        __builtin_prefetch(g->pools->tables->row_sums + aim->line[i]);
     }
 }
 
@@ -89,11 +113,17 @@ enum { SENT_TOGETHER = 16 };
 static inline __attribute__((always_inline)) void aim_samples(helio_material_kind kind, const gathering *g,
                                                               uint32_t first, surface_aim *aim)
 {
+    const bool has_light = has_light_techniques(g);
+    const bool wants_tiles = g->pools->bins != NULL && (has_light || g->knows_diffuse);
     for (uint32_t begin = 0; begin < aim->count; begin += SENT_TOGETHER) {
         const uint32_t end = begin + SENT_TOGETHER < aim->count ? begin + SENT_TOGETHER : aim->count;
         draw_directions(kind, g, first + begin, end - begin, aim->x + begin, aim->y + begin, aim->z + begin);
         find_texels(g, begin, end, aim);
-        fetch_ahead(g, begin, end, aim);
+        fetch_texels(g, begin, end, aim);
+        if (wants_tiles)
+            find_tiles(g->pools->bins->tiles, begin, end, aim);
+        if (has_light)
+            fetch_densities(g, begin, end, aim);
     }
 }
 
@@ -125,28 +155,11 @@ static void read_texels(const gathering *g, sample_block *block)
     }
 }
 
-/* face_place_density()'s unit for the density with which the light techniques draw a direction, each weighted with its
- * expected count. */
-static inline float unit_density(gathering *g, const face_place *at)
-{
-    const float expected = g->expected_in_face[at->face];
-    if (!(expected > 0.0f))
-        return 0.0f;
-    if (!g->has_tiles)
-        return expected * pools_unit_density(g->pools, g->pool, at);
-    const tiles *t = g->pools->bins->tiles;
-    const uint32_t position = tiles_position(t, at->face, at->row, at->column);
-    if (!g->tiles.is_known[position / TILE_GROUP])
-        KERNEL(know_tiles)(&g->tiles, position / TILE_GROUP);
-    return expected * (point_tiles_probability(&g->tiles, position) * tiles_unit_density(t, at));
-}
-
 /* Of points that know diffuse light. */
 static void look_for_known(const gathering *g, const surface_aim *aim, float *known)
 {
-    const tiles *t = g->pools->bins->tiles;
     for (uint32_t i = 0; i < aim->count; i++)
-        known[i] = g->tiles.knows_diffuse[tiles_position(t, aim->face[i], aim->row[i], aim->column[i]) / TILE_GROUP];
+        known[i] = g->tiles.knows_diffuse[aim->tile[i] / TILE_GROUP];
 }
 
 /* What the density of the light techniques is made of, besides the radiance. */
@@ -156,14 +169,54 @@ typedef struct density_parts {
     float unit[BLOCK_SAMPLES];
 } density_parts;
 
-static void look_up(gathering *g, const surface_aim *aim, density_parts *parts)
+/* face_place_density()'s unit for the density with which the light techniques draw a direction, each weighted with its
+ * expected count: by the tiles as a point weighs them, */
+static void find_units_of_tiles(gathering *g, const surface_aim *aim, float *unit)
+{
+    const float *segments = g->pools->bins->tiles->segment_densities, expected = g->counts.expected[0];
+    for (uint32_t i = 0; i < aim->count; i++) {
+        const uint32_t tile = aim->tile[i];
+        if (!g->tiles.is_known[tile / TILE_GROUP])
+            KERNEL(know_tiles)(&g->tiles, tile / TILE_GROUP);
+        unit[i] = expected * (point_tiles_probability(&g->tiles, tile) * segments[aim->segment[i]]);
+    }
+}
+
+/* by the pool of a bin, */
+static void find_units_of_bin(const gathering *g, const surface_aim *aim, float *unit)
+{
+    const normal_bins *bins = g->pools->bins;
+    const float *segments = bins->tiles->segment_densities, share = bins->shares[g->pool];
+    const float expected = g->counts.expected[0];
+    const uint32_t *sums = normal_bins_sums(bins, g->pool);
+    for (uint32_t i = 0; i < aim->count; i++)
+        unit[i] = expected * (normal_bins_probability_by(sums, aim->tile[i], share) * segments[aim->segment[i]]);
+}
+
+/* and by other pools. */
+static void find_units_of_pools(const gathering *g, const surface_aim *aim, float *unit)
 {
     for (uint32_t i = 0; i < aim->count; i++) {
         const face_place at = {aim->face[i], aim->row[i], aim->column[i], aim->u[i], aim->v[i]};
-        parts->solid_angle[i] = g->environment->solid_angle[aim->mirrored[i]];
-        parts->exponent[i] = g->pools->tables->row_sums[(size_t)at.face * g->environment->size + at.row].exponent;
-        parts->unit[i] = unit_density(g, &at);
+        const float expected = g->expected_in_face[at.face];
+        unit[i] = expected > 0.0f ? expected * pools_unit_density(g->pools, g->pool, &at) : 0.0f;
     }
+}
+
+static void look_up(gathering *g, const surface_aim *aim, density_parts *parts)
+{
+    const float *solid_angles = g->environment->solid_angle;
+    const row_sum *rows = g->pools->tables->row_sums;
+    for (uint32_t i = 0; i < aim->count; i++) {
+        parts->solid_angle[i] = solid_angles[aim->mirrored[i]];
+        parts->exponent[i] = rows[aim->line[i]].exponent;
+    }
+    if (g->has_tiles)
+        find_units_of_tiles(g, aim, parts->unit);
+    else if (g->pools->bins != NULL)
+        find_units_of_bin(g, aim, parts->unit);
+    else
+        find_units_of_pools(g, aim, parts->unit);
 }
 
 /* What the tables know of a texel follows from its radiance, so that they, in no near cache either, are left alone. */

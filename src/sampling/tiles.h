@@ -64,23 +64,30 @@ void tiles_update(tiles *t, const helio_tables *tables);
  * angles. */
 float tiles_sine(float angle);
 
+/* of_line[], in a form for registers: the quotient is at least 1/2 of 1/R from whole numbers, far more than what
+ * rounding does. per_texel: 1 / R. */
+static inline uint32_t tiles_of_line(uint32_t per_edge, float per_texel, uint32_t line)
+{
+    return (uint32_t)(int32_t)(((float)(int32_t)((line + 1) * per_edge) - 0.5f) * per_texel);
+}
+
 /* Where the tile that holds a texel comes in the order. */
 static inline uint32_t tiles_position(const tiles *t, uint32_t face, uint32_t row, uint32_t column)
 {
     return t->positions[(face * t->per_edge + t->of_line[row]) * t->per_edge + t->of_line[column]];
 }
 
-/* face_place_density()'s unit for the density given the tile: the probabilities of its row in the tile and of its texel
- * in that part of the row, from the stored integers. */
-static inline const float *tiles_unit_density_at(const tiles *t, const face_place *at)
+/* The part of a row that is in one tile, among all. line: the row, counted through all faces. */
+static inline uint32_t tiles_segment(const tiles *t, uint32_t line, uint32_t column)
 {
-    const size_t line = (size_t)at->face * t->size + at->row;
-    return &t->segment_densities[line * t->per_edge + t->of_line[at->column]];
+    return line * t->per_edge + t->of_line[column];
 }
 
+/* face_place_density()'s unit for the density given the tile: the probabilities of its row in the tile and of its texel
+ * in that part of the row, from the stored integers. */
 static inline float tiles_unit_density(const tiles *t, const face_place *at)
 {
-    return *tiles_unit_density_at(t, at);
+    return t->segment_densities[tiles_segment(t, at->face * t->size + at->row, at->column)];
 }
 
 #endif
