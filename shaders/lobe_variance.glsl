@@ -9,6 +9,11 @@ float lobe_class_width(uint class_of_lobe)
     return float(1u << class_of_lobe);
 }
 
+float lobe_class_most(uint class_of_lobe)
+{
+    return class_of_lobe == 0u ? 1.6 : class_of_lobe == 1u ? 0.55 : 0.2;
+}
+
 // Of lobes that shine alone. alpha2: GGX's alpha^2, or 1 / exponent.
 uint lobe_class(float alpha2)
 {

@@ -6,9 +6,9 @@
 #include "common.glsl"
 #include "lobe_variance.glsl"
 
-const float NEAR_COSINE = 0.82, LOBE_INTEGRAL = 12.566370614359172;
+const float NEAR_COSINE = 0.82, LOBE_INTEGRAL = 12.566370614359172, POOL_VARIANCE = 0.5;
 
-// By class: the lobe; lobe x light; (lobe x light)^2 / density of the samples.
+// By class: the lobe; lobe x light; (lobe x light)^2 / density of the samples, those of the pool for less.
 shared vec3 parts[LAYOUT_LOBE_CLASSES * gl_WorkGroupSize.x];
 
 // A part of the sky, and the variance of directions in it, where that is more than a tile's.
@@ -31,8 +31,10 @@ void add_part(vec3 axis, sky_part part, float by_pool, inout vec3 sums[LAYOUT_LO
     for (uint i = 0u; i < LAYOUT_LOBE_CLASSES; i++) {
         const float value = lobe_at(cosine, lobe_class_width(i) * edge2 + part.variance);
         const float light = value * part.light;
-        const float density = (1.0 - LOBE_POOL_PART) / LOBE_INTEGRAL * value + by_pool * part.peak;
-        sums[i] += vec3(value * part.angle, light, density > 0.0 ? light * value * part.peak / density : 0.0);
+        const float of_lobe = (1.0 - LOBE_POOL_PART) / LOBE_INTEGRAL * value, of_pool = by_pool * part.peak;
+        const float density = of_lobe + of_pool, counted = of_lobe + POOL_VARIANCE * of_pool;
+        const float square = density > 0.0 ? light * value * part.peak * counted / (density * density) : 0.0;
+        sums[i] += vec3(value * part.angle, light, square);
     }
 }
 
@@ -77,6 +79,6 @@ void main()
         for (uint k = 0u; k < threads; k++)
             sum += parts[i * threads + k];
         const float variance = sum.y > 0.0 ? sum.z / sum.y * (sum.x / LOBE_INTEGRAL) / sum.y - 1.0 : 0.0;
-        STATE.lobe_variances.at[LAYOUT_LOBE_CLASSES * bin + i] = lobe_class_width(i) * variance;
+        STATE.lobe_variances.at[LAYOUT_LOBE_CLASSES * bin + i] = variance;
     }
 }

@@ -110,7 +110,7 @@ bool is_calm(scene_material m, vec3 normal, vec3 view, uint seed)
     precise vec3 mirror = normal * twice - view;
     const uint cell = bin_of_normal(mirror, random);
     return class_of < LAYOUT_LOBE_CLASSES && STATE.lobe_variances.at[LAYOUT_LOBE_CLASSES * cell + class_of] <
-                                                 float(LAYOUT_LOBE_MOST_VARIANCE) * (0.5 + unit_float(hash(random)));
+                                                 lobe_class_most(class_of) * (0.5 + unit_float(hash(random)));
 }
 
 // How much, at most, a face can light a surface with this normal: strategy_beta().

@@ -55,7 +55,7 @@ static void add_lamp(float *rgb, float radiance)
 /* Over all tiles, none taken together. */
 static double plain_variance(const tiles *t, vec3 axis, uint32_t class)
 {
-    const double times = (double)lobe_class_width(class), width = times * (double)t->edge * (double)t->edge;
+    const double width = (double)lobe_class_width(class) * (double)t->edge * (double)t->edge;
     double all = 0, angle = 0, light = 0, square = 0;
     for (uint32_t i = 0; i < t->count; i++)
         all += (double)t->light[i];
@@ -65,9 +65,10 @@ static double plain_variance(const tiles *t, vec3 axis, uint32_t class)
         const double peak = (double)t->peak[i], lit = lobe * (double)t->light[i];
         angle += lobe * (double)t->angle[i];
         light += lit;
-        square += lit * peak * lobe / (15.0 / 16 * lobe / (4 * PI) + 1.0 / 16 * peak / (all / 2));
+        const double of_lobe = 15.0 / 16 * lobe / (4 * PI), of_pool = 1.0 / 16 * peak / (all / 2);
+        square += lit * peak * lobe * (of_lobe + of_pool / 2) / pow(of_lobe + of_pool, 2);
     }
-    return times * (square * angle / (4 * PI * light * light) - 1);
+    return square * angle / (4 * PI * light * light) - 1;
 }
 
 /* Groups that are far count as one direction with one brightness. Beside a lamp that is more than there is, so that
@@ -86,8 +87,7 @@ static void variances_are_those_of_sums_over_all_tiles(void **state)
             for (uint32_t class = 0; class < LOBE_CLASSES; class ++) {
                 const double found = (double)bins->lobe_variances[bin * LOBE_CLASSES + class];
                 const double expected = plain_variance(bins->tiles, bins->bins[bin].centre, class);
-                const double times = (double)lobe_class_width(class);
-                const double off = (found - expected) / (times + fabs(expected));
+                const double off = (found - expected) / (1 + fabs(expected));
                 greatest = fmax(greatest, off);
                 least = fmin(least, off);
                 if (off < -0.1 || off > (m == 2 ? 0.4 : 0.1))

@@ -43,8 +43,7 @@ typedef struct kernel_set {
     uint32_t (*weigh_tiles)(const tiles *t, const normal_bin *bin, uint32_t *sums);
 
     /* How uneven the light is in lobes of each class about an axis: the variance of one sample of a point in such a
-     * lobe that weighs no tiles, as part of the square of the mean, times the square of the lobe's width in tiles, as
-     * tiles resolve wide lobes better. The same bits with every instruction set. */
+     * lobe that weighs no tiles, as part of the square of the mean. The same bits with every instruction set. */
     void (*find_lobe_variances)(const tiles *t, vec3 axis, float variances[LOBE_CLASSES]);
 
     /* The integrals of direction over rows of texels; and adds radiance x these to sums over the columns. rgb:

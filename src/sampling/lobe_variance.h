@@ -14,10 +14,8 @@
  * Those of the last are not asked about: wider ones, or with a diffuse one beside. */
 enum { LOBE_CLASSES = 3, LOBE_UNASKED = LOBE_CLASSES };
 
-enum {
-    LOBE_SAMPLES_PER_POOL = 16, /* one of so many samples of a point in a calm lobe reads the pool */
-    LOBE_MOST_VARIANCE = 1,     /* of the kernel find_lobe_variances(): from there on it pays to weigh tiles */
-};
+/* One of so many samples of a point in a calm lobe reads the pool. */
+enum { LOBE_SAMPLES_PER_POOL = 16 };
 
 static const float LOBE_POOL_PART = 1.0f / LOBE_SAMPLES_PER_POOL;
 
@@ -25,6 +23,13 @@ static const float LOBE_POOL_PART = 1.0f / LOBE_SAMPLES_PER_POOL;
 static inline float lobe_class_width(uint32_t class)
 {
     return (float)(1u << class);
+}
+
+/* The variance from which on it pays to weigh tiles, which resolve wide lobes better: by what both leave, and the time
+ * that they take. */
+static inline float lobe_class_most(uint32_t class)
+{
+    return class == 0 ? 1.6f : class == 1 ? 0.55f : 0.2f;
 }
 
 /* Of lobes that shine alone. alpha2: GGX's alpha^2, or 1 / exponent; edge: tiles.edge. */

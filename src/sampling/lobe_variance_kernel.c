@@ -9,6 +9,10 @@
 /* Groups whose middle is nearer to the axis are looked at tile by tile, others as a whole: cos 35 degrees. */
 static const float NEAR_COSINE = 0.82f;
 
+/* Samples of the pool follow the light so evenly that they leave about this part of the variance of as many that do
+ * not. */
+static const float POOL_VARIANCE = 0.5f;
+
 /* Of lobe_at() over all directions. */
 static const float LOBE_INTEGRAL = 4.0f * (float)PI;
 
@@ -24,7 +28,7 @@ typedef struct sampled_lobe {
 typedef struct lobe_sums {
     alignas(64) float angle[TILE_GROUP];  /* the lobe */
     alignas(64) float light[TILE_GROUP];  /* lobe x light */
-    alignas(64) float square[TILE_GROUP]; /* (lobe x light)^2 / density of the samples */
+    alignas(64) float square[TILE_GROUP]; /* (lobe x light)^2 / density of the samples, those of the pool for less */
 } lobe_sums;
 
 /* Sixteen parts of the sky that follow each other. */
@@ -56,10 +60,11 @@ static inline __attribute__((always_inline)) void add_parts(const sampled_lobe *
         const float width = lobe.width + (parts.variance != NULL ? parts.variance[i] : 0.0f);
         const float value = counted[i] * lobe_at(cosine_to(lobe.axis, &parts, i), width);
         const float light = value * parts.light[i], peak = parts.peak[i];
-        const float density = lobe.by_lobe * value + lobe.by_pool * peak;
+        const float of_lobe = lobe.by_lobe * value, of_pool = lobe.by_pool * peak, density = of_lobe + of_pool;
+        const float part = of_lobe + POOL_VARIANCE * of_pool;
         sums->angle[i] += value * parts.angle[i];
         sums->light[i] += light;
-        sums->square[i] += density > 0.0f ? light * value * peak / density : 0.0f;
+        sums->square[i] += density > 0.0f ? light * value * peak * part / (density * density) : 0.0f;
     }
 }
 
@@ -117,11 +122,10 @@ void KERNEL(find_lobe_variances)(const tiles *t, vec3 axis, float variances[LOBE
 {
     const float irradiance = 0.5f * sum_of_groups(t->groups.light); /* of a surface that faces most of it */
     for (uint32_t class = 0; class < LOBE_CLASSES; class ++) {
-        const float times = lobe_class_width(class);
         const sampled_lobe lobe = {.axis = axis,
-                                   .width = times * t->edge * t->edge,
+                                   .width = lobe_class_width(class) * t->edge * t->edge,
                                    .by_lobe = (1.0f - LOBE_POOL_PART) / LOBE_INTEGRAL,
                                    .by_pool = irradiance > 0.0f ? LOBE_POOL_PART / irradiance : 0.0f};
-        variances[class] = times * find_variance(&lobe, t);
+        variances[class] = find_variance(&lobe, t);
     }
 }

@@ -15,7 +15,6 @@ _Static_assert((int)LAYOUT_TILE_GROUP == (int)TILE_GROUP && (int)LAYOUT_TILE_RUN
                    (int)LAYOUT_REFINED_TIMES == (int)POINT_REFINED_TIMES,
                "as in tiles.h and point_tiles.h");
 _Static_assert((int)LAYOUT_LOBE_CLASSES == (int)LOBE_CLASSES &&
-                   (int)LAYOUT_LOBE_MOST_VARIANCE == (int)LOBE_MOST_VARIANCE &&
                    (int)LAYOUT_LOBE_SAMPLES_PER_POOL == (int)LOBE_SAMPLES_PER_POOL,
                "as in lobe_variance.h");
 
