@@ -28,6 +28,7 @@ typedef struct point_sample {
     double contribution[3];      /* to the pixel, if the light arrives: all of them sum to the unoccluded radiance */
     double density;              /* of all samples of the pixel there, 1/sr */
     uint32_t technique;          /* 0 ... TECHNIQUES - 1 */
+    bool is_of_tiles;            /* in place of the pool of a bin */
     uint32_t pass, pool, number; /* which sample of which pool it is; not for those of the surface */
     sample_fate fate;
 } point_sample;
@@ -47,8 +48,8 @@ typedef struct samples_findings {
     helio_pixel_step pixel;               /* in the first pass */
     float normal[3], geometric_normal[3]; /* in the map's space */
     uint32_t passes;                      /* each has pools of its own */
-    bool is_of_tiles;                     /* the point reads the lists of tiles in place of a pool */
-    uint32_t pool_count, pool_length;     /* pools that the point reads in a pass, samples of a pool */
+    bool reads_tiles, reads_pools;        /* in some pass the lists of tiles; in some pass pools */
+    uint32_t pool_count, pool_length;     /* pools that the point reads in a pass, samples of the longest */
     uint32_t pooled;                      /* samples of these pools; there are none of faces without light */
     helio_pool_sample *pools;             /* [pooled] */
     uint32_t sample_count, capacity;      /* samples; room for them */
@@ -69,7 +70,7 @@ void samples_release(samples_findings *found);
  * .radiance but the flux. */
 helio_status samples_gather(samples_findings *found, render_job *job, uint64_t index);
 
-/* "+X" and so on where there is a pool for each face; "map", "bin", "BRDF", "cosine". */
+/* "+X" and so on where there is a pool for each face; "map", "bin", "tiles", both by turns, "BRDF", "cosine". */
 const char *samples_technique_name(const samples_findings *found, uint32_t technique);
 bool samples_is_by_face(const samples_findings *found);
 uint32_t samples_useless(const technique_count *count);

@@ -20,7 +20,6 @@ bool samples_make(samples_findings *found, const render_job *job)
         .strategy = helio_strategy_resolve(job->plan.strategy),
         .passes = helio_renderer_steps(job->renderer),
         .pool_count = helio_pools_techniques(pools),
-        .pool_length = helio_pools_length(pools),
         .capacity = job->plan.options->spp,
     };
     found->samples = malloc(found->capacity * sizeof *found->samples);
@@ -49,16 +48,15 @@ typedef struct gathered_step {
 } gathered_step;
 
 /* Appends what a pool holds. */
-static helio_status read_pool(samples_findings *found, const helio_pools *pools, uint32_t pool)
+static helio_status read_pool(samples_findings *found, const helio_pools *pools, uint32_t pool, uint32_t length)
 {
-    helio_pool_sample *grown =
-        realloc(found->pools, ((size_t)found->pooled + found->pool_length + 1) * sizeof *found->pools);
+    helio_pool_sample *grown = realloc(found->pools, ((size_t)found->pooled + length + 1) * sizeof *found->pools);
     if (grown == NULL)
         return HELIO_ERR_MEMORY;
     found->pools = grown;
     helio_pool_sample *to = found->pools + found->pooled;
-    helio_status status = helio_pools_read(pools, pool, 0, found->pool_length, to);
-    for (uint32_t i = 0; status == HELIO_OK && i < found->pool_length; i++)
+    helio_status status = helio_pools_read(pools, pool, 0, length, to);
+    for (uint32_t i = 0; status == HELIO_OK && i < length; i++)
         if (to[i].density > 0) /* there is none in a pool without light */
             found->pools[found->pooled++] = to[i];
     return status;
@@ -70,9 +68,12 @@ static helio_status read_pools(samples_findings *found, const gathered_step *ste
     helio_status status = HELIO_OK;
     for (uint32_t k = 0; k < found->pool_count && status == HELIO_OK; k++) {
         const uint32_t pool = step->counts.pool[k];
-        found->is_of_tiles = pool == HELIO_POOL_OF_TILES;
-        found->pool_length = found->is_of_tiles ? helio_pools_listed(step->pools) : helio_pools_length(step->pools);
-        status = read_pool(found, step->pools, pool);
+        const bool is_of_tiles = pool == HELIO_POOL_OF_TILES;
+        const uint32_t length = is_of_tiles ? helio_pools_listed(step->pools) : helio_pools_length(step->pools);
+        found->reads_tiles |= is_of_tiles;
+        found->reads_pools |= !is_of_tiles;
+        found->pool_length = length > found->pool_length ? length : found->pool_length;
+        status = read_pool(found, step->pools, pool, length);
     }
     return status;
 }
@@ -117,6 +118,7 @@ static point_sample describe(const samples_findings *found, const gathered_step 
     if (sample->technique < found->pool_count) {
         described.pool = sample->technique;
         described.number = sample->number;
+        described.is_of_tiles = step->counts.pool[sample->technique] == HELIO_POOL_OF_TILES;
         helio_pool_sample pooled = {0}; /* as it is there, not turned to and fro */
         helio_pools_read(step->pools, step->counts.pool[sample->technique], sample->number, 1, &pooled);
         memcpy(described.direction, pooled.direction, sizeof described.direction);
@@ -211,7 +213,8 @@ static helio_status gather_step(samples_findings *found, render_job *job, const 
 
 static void forget(samples_findings *found)
 {
-    found->sample_count = found->pooled = 0;
+    found->sample_count = found->pooled = found->pool_length = 0;
+    found->reads_tiles = found->reads_pools = false;
     found->all = (technique_count){0};
     memset(found->techniques, 0, sizeof found->techniques);
     memset(found->fallen, 0, sizeof found->fallen);
@@ -227,6 +230,7 @@ helio_status samples_gather(samples_findings *found, render_job *job, uint64_t i
         return HELIO_ERR_MEMORY;
     helio_status status = HELIO_OK;
     forget(found);
+    found->pool_length = helio_pools_length(helio_renderer_pools(job->renderer));
     for (uint32_t step = 0; step < found->passes && status == HELIO_OK; step++)
         status = gather_step(found, job, &frame, step, samples);
     free(samples);

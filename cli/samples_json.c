@@ -90,6 +90,7 @@ static json_t *sample_object(const samples_findings *found, const point_sample *
                         json_pack("[fff]", sample->contribution[0], sample->contribution[1], sample->contribution[2]));
     json_object_set_new(object, "pass", json_whole(sample->pass));
     json_object_set_new(object, "number", has_pool ? json_whole(sample->number) : json_null());
+    json_object_set_new(object, "of_tiles", json_boolean(sample->is_of_tiles));
     return object;
 }
 

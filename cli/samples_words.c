@@ -30,7 +30,9 @@ const char *samples_technique_name(const samples_findings *found, uint32_t techn
         return found->strategy == HELIO_STRATEGY_COSINE ? "cosine" : "BRDF";
     if (samples_is_by_face(found))
         return face_names[technique];
-    return found->is_of_tiles ? "tiles" : is_by_bin(found) ? "bin" : "map";
+    if (!is_by_bin(found))
+        return "map";
+    return !found->reads_tiles ? "bin" : found->reads_pools ? "bin/tiles" : "tiles";
 }
 
 uint32_t samples_useless(const technique_count *count)
@@ -70,11 +72,12 @@ void samples_remark(const samples_findings *found, char *text, size_t size)
     else if (samples_is_by_face(found))
         snprintf(text, size, "The face %s gives %.0f %% of all light and gets %" PRIu32 " of the %" PRIu32 " samples",
                  face_names[face], share, found->techniques[face].realised, found->sample_count);
-    else if (found->is_of_tiles)
+    else if (found->reads_tiles)
         snprintf(text, size,
-                 "Light samples follow light, material and cosine as they are at this point: %" PRIu32 " of %" PRIu32
+                 "Light samples follow light, material and cosine as they are at this point%s: %" PRIu32 " of %" PRIu32
                  " samples are useless",
-                 useless, found->sample_count);
+                 found->reads_pools ? ", or in some passes, where light is calm, no material" : "", useless,
+                 found->sample_count);
     else if (is_by_bin(found))
         snprintf(text, size,
                  "Light samples follow light and cosine for normals like the point's: %" PRIu32 " of %" PRIu32

@@ -45,16 +45,17 @@ float luminance(vec3 rgb)
 // The rule for grazing views.
 vec3 lift_view(vec3 normal, vec3 view)
 {
-    const float cosine = dot(normal, view);
+    precise float cosine = dot(normal, view);
     if (cosine >= LEAST_VIEW_COSINE)
         return view;
-    vec3 along = view - normal * cosine;
-    const float norm = length(along);
+    precise vec3 along = view - normal * cosine;
+    precise float norm = length(along);
     if (norm < 1e-6)
         return normal;
     along /= norm;
     along = normalize(along - normal * dot(normal, along));
-    return along * sqrt(1.0 - LEAST_VIEW_COSINE * LEAST_VIEW_COSINE) + normal * LEAST_VIEW_COSINE;
+    precise vec3 lifted = along * sqrt(1.0 - LEAST_VIEW_COSINE * LEAST_VIEW_COSINE) + normal * LEAST_VIEW_COSINE;
+    return lifted;
 }
 
 float part_of(float part, float other)

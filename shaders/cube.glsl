@@ -26,7 +26,8 @@ cube_meeting cube_meet(vec3 d)
 cube_position cube_project(vec3 d)
 {
     cube_meeting at = cube_meet(d);
-    return cube_position(at.face, at.right / at.distance, at.down / at.distance);
+    precise float u = at.right / at.distance, v = at.down / at.distance;
+    return cube_position(at.face, u, v);
 }
 
 // A direction, of any length, towards a point of a face.

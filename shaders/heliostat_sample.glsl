@@ -85,8 +85,8 @@ struct helio_surface {
 
 // Light that leaves a point towards the eye, with nothing in the way: helio_estimate() in heliostat/sampling.h, for a
 // material that helio_material_check() would take. Directions are unit vectors in the map's space. samples: at most
-// helio_pools_sample_limit(). Points that shine, of PRODUCT_BRDF, read their bin's pool here, where the CPU weighs tiles: other
-// samples, the same expectation.
+// helio_pools_sample_limit(). Points that shine, of PRODUCT_BRDF, read their bin's pool here, where the CPU mostly weighs tiles:
+// other samples, the same expectation.
 vec3 helio_estimate(vec3 normal, vec3 geometric_normal, vec3 view, helio_surface surface, uint seed, uint samples,
                     float brdf_share)
 {

@@ -17,7 +17,7 @@ float lobe_class_most(uint class_of_lobe)
 // Of lobes that shine alone. alpha2: GGX's alpha^2, or 1 / exponent.
 uint lobe_class(float alpha2)
 {
-    const float width = alpha2 / (STATE.tile_edge * STATE.tile_edge) + 1.0;
+    precise float width = alpha2 / (STATE.tile_edge * STATE.tile_edge) + 1.0;
     return (width >= 1.4 ? 1u : 0u) + (width >= 2.8 ? 1u : 0u) + (width >= 5.6 ? 1u : 0u);
 }
 

@@ -33,7 +33,7 @@ void add_part(vec3 axis, sky_part part, float by_pool, inout vec3 sums[LAYOUT_LO
         const float light = value * part.light;
         const float of_lobe = (1.0 - LOBE_POOL_PART) / LOBE_INTEGRAL * value, of_pool = by_pool * part.peak;
         const float density = of_lobe + of_pool, counted = of_lobe + POOL_VARIANCE * of_pool;
-        const float square = density > 0.0 ? light * value * part.peak * counted / (density * density) : 0.0;
+        const float square = density > 0.0 ? light * (value * part.peak * counted / (density * density)) : 0.0;
         sums[i] += vec3(value * part.angle, light, square);
     }
 }

@@ -66,7 +66,7 @@ float share_of_need(float need)
 }
 
 // Bins know light and cosine, and tiles light and BRDF, so that BRDF samples have only the lobe to look after, the more
-// the narrower it is. How many they are, shade_tiles.comp finds; here it matters whether there are any.
+// the narrower it is. How many they are where tiles are weighed, shade_tiles.comp finds; here it matters whether there are any.
 float share_of_lobe(shading_point p, scene_material m)
 {
     const brdf b = prepare_brdf(m, p.normal, lift_view(p.normal, p.view));
@@ -92,15 +92,16 @@ float surface_share(shading_point p, scene_material m)
 // See class_of_lobe() in estimate.c.
 uint class_of_lobe(scene_material m)
 {
-    const float alpha = m.roughness * m.roughness;
+    precise float alpha = m.roughness * m.roughness, alpha2 = alpha * alpha;
     if (m.kind == LAYOUT_GGX && m.metallic == 1.0)
-        return lobe_class(alpha * alpha);
-    if (m.kind == LAYOUT_PHONG && !(luminance(m.diffuse) > 0.0))
+        return lobe_class(alpha2);
+    if (m.kind == LAYOUT_PHONG && !(luminance(m.diffuse) > 0.0) && luminance(m.specular) > 0.0)
         return lobe_class(1.0 / max(m.exponent, 1e-3));
     return LAYOUT_LOBE_CLASSES;
 }
 
-// See is_calm() in points_kernel.c. Directions in the map's space.
+// See is_calm() in points_kernel.c. Directions in the map's space. shade.comp and shade_tiles.comp both ask, and must be told
+// the same, so that all is precise that this depends on.
 bool is_calm(scene_material m, vec3 normal, vec3 view, uint seed)
 {
     if (LIGHT != LAYOUT_LIGHT_BINS || SURFACE != LAYOUT_SURFACE_BRDF || is_even())
@@ -109,8 +110,9 @@ bool is_calm(scene_material m, vec3 normal, vec3 view, uint seed)
     precise float twice = 2.0 * (normal.x * view.x + normal.y * view.y + normal.z * view.z);
     precise vec3 mirror = normal * twice - view;
     const uint cell = bin_of_normal(mirror, random);
-    return class_of < LAYOUT_LOBE_CLASSES && STATE.lobe_variances.at[LAYOUT_LOBE_CLASSES * cell + class_of] <
-                                                 lobe_class_most(class_of) * (0.5 + unit_float(hash(random)));
+    precise float limit = lobe_class_most(class_of) * (0.5 + unit_float(hash(random)));
+    return class_of < LAYOUT_LOBE_CLASSES &&
+           STATE.lobe_variances.at[LAYOUT_LOBE_CLASSES * cell + class_of] < limit;
 }
 
 // How much, at most, a face can light a surface with this normal: strategy_beta().

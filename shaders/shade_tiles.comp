@@ -3,7 +3,8 @@
 //
 // The light that leaves points that shine, where pools are of bins: a work group weighs the tiles of the map by light x
 // BRDF x cosine for one point, and takes samples from the lists of these tiles, and of the specular lobe. As
-// src/sampling/point_tiles_kernel.c. Points that do not shine are left to shade.comp.
+// src/sampling/point_tiles_kernel.c. Points that do not shine, or whose lobes are calm, are left to
+// shade.comp.
 #include "common.glsl"
 
 layout(constant_id = 1) const uint KINDS = 7u; // of materials, as bits

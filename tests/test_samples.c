@@ -231,6 +231,47 @@ static void a_point_of_product_names_what_it_reads(void **state)
     }
 }
 
+/* Metal may weigh tiles in one pass and, where the light is calm for it, read a bin in another. */
+static void passes_of_metal_say_what_each_sample_is_of(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+    bool is_mixed = false;
+    write_sunny_map(4);
+    for (int angle = 0; angle < 360 && !is_mixed; angle += 10) {
+        char options[512];
+        int of_pass[16], tiles = 0, bins = 0;
+        snprintf(
+            options, sizeof options,
+            SCENE
+            " --pixel 30,20 --rotate %d --strategy product+brdf --spp 1024 --material ggx:metallic=1,roughness=0.3",
+            angle);
+        json_t *seen = run_samples(options), *frame = frame_of(seen, 0), *samples = member(frame, "samples");
+        memset(of_pass, -1, sizeof of_pass);
+        for (size_t k = 0; k < json_array_size(samples); k++) {
+            const json_t *sample = json_array_get(samples, k);
+            const int of_tiles = json_is_true(member(sample, "of_tiles"));
+            int *pass = &of_pass[(size_t)number_of(sample, "pass") % 16];
+            if (strcmp(text_of(sample, "technique"), "BRDF") == 0)
+                continue;
+            assert_true(*pass == -1 || *pass == of_tiles);
+            *pass = of_tiles;
+        }
+        for (size_t pass = 0; pass < 16; pass++) {
+            tiles += of_pass[pass] == 1;
+            bins += of_pass[pass] == 0;
+        }
+        print_message("turned by %d: %d passes of tiles, %d of bins\n", angle, tiles, bins);
+        assert_int_equal(tiles + bins, (int)number_of(frame, "passes"));
+        assert_non_null(json_object_get(member(frame, "techniques"), bins == 0    ? "tiles"
+                                                                     : tiles == 0 ? "bin"
+                                                                                  : "bin/tiles"));
+        is_mixed = tiles > 0 && bins > 0;
+        json_decref(seen);
+    }
+    assert_true(is_mixed);
+}
+
 static void check_fates(const json_t *frame, double counts[3])
 {
     const json_t *point = member(frame, "point"), *samples = member(frame, "samples");
@@ -872,6 +913,7 @@ int main(void)
         program_test(counts_sum_to_the_samples),
         program_test(the_used_samples_sum_to_the_pixel_of_the_render),
         program_test(a_point_of_product_names_what_it_reads),
+        program_test(passes_of_metal_say_what_each_sample_is_of),
         program_test(useless_samples_give_nothing_and_used_ones_are_above_the_horizon),
         program_test(shadows_are_told_from_what_is_useless),
         program_test(no_sample_is_spent_on_a_sun_behind_the_point),

@@ -133,6 +133,19 @@ static void light_stage_with(stage *s, uint64_t seed)
     s->environment->frame++;
 }
 
+/* Even but for noise, and a lamp on three faces. */
+static void light_stage_softly(stage *s)
+{
+    float *rgb = s->environment->cube;
+    uint64_t seed = 8;
+    for (size_t i = 0; i < 6 * (size_t)SIZE * SIZE * 3; i++)
+        rgb[i] = 0.7f + 0.3f * (float)random_unit(&seed);
+    for (size_t row = 28; row < 3 * SIZE; row += row % 4 == 3 ? SIZE - 3 : 1)
+        for (size_t i = 0; i < 12; i++)
+            rgb[(row * SIZE + 20) * 3 + i] = 300.0f;
+    s->environment->frame++;
+}
+
 typedef struct difference {
     double mean;    /* of the pixels' relative differences */
     double worst;   /* largest of them */
@@ -209,6 +222,55 @@ static void strategies_give_the_pictures_of_the_cpu(void **state)
         for (size_t m = 0; m < 3; m++)
             if (m == (i + 1 + i / 3) % 3 || is_thorough())
                 compare_strategy(strategies[i], MATERIALS[m]);
+}
+
+/* Of points that look everywhere, those that weigh tiles. */
+static uint32_t count_weighing(const stage *s, const char *material, uint32_t points)
+{
+    uint64_t seed = 5;
+    uint32_t weighing = 0;
+    helio_shading_point point = {0};
+    assert_ok(helio_material_parse(material, &point.material));
+    for (point.seed = 0; point.seed < points; point.seed++) {
+        vec3 normal = {0, 0, 0};
+        helio_counts counts;
+        while (!(dot(normal, normal) > 0.01f))
+            normal = (vec3){(float)random_unit(&seed) - 0.5f, (float)random_unit(&seed) - 0.5f,
+                            (float)random_unit(&seed) - 0.5f};
+        vec3_to(normalize(normal), point.normal);
+        vec3_to(normalize(normal), point.view);
+        assert_ok(helio_count(helio_renderer_pools(s->cpu), &point, NULL, &counts));
+        weighing += counts.pool[0] == HELIO_POOL_OF_TILES;
+    }
+    return weighing;
+}
+
+/* Calm points and others, of each class of lobes. */
+static void calm_lobes_are_lit_alike(void **state)
+{
+    static const char *const materials[] = {"ggx:base=1,0.8,0.3,metallic=1,roughness=0.15",
+                                            "ggx:base=1,0.8,0.3,metallic=1,roughness=0.3",
+                                            "ggx:base=1,0.8,0.3,metallic=1,roughness=0.4", "phong:kd=0,ks=0.9,n=120"};
+    enum { POINTS = 500 };
+    const helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_PRODUCT_BRDF};
+    (void)state;
+    for (size_t i = 0; i < sizeof materials / sizeof *materials; i++) {
+        plays_hardware = i % 2 == 1;
+        casts_shadows = i == 2;
+        stage s = make_stage(materials[i], &desc);
+        helio_frame_info cpu, vulkan;
+        light_stage_softly(&s);
+        render_both(&s, &cpu, &vulkan);
+        const difference d = compare_pictures(&s, ROUNDING);
+        const uint32_t weighing = count_weighing(&s, materials[i], POINTS);
+        print_message("%s: mean %.2e, worst %.2e, %u of %u pixels off; %u of %u points weigh tiles\n", materials[i],
+                      d.mean, d.worst, d.off, d.count, weighing, POINTS);
+        assert_true(weighing > POINTS / 10 && weighing < POINTS - POINTS / 10);
+        assert_int_equal(vulkan.samples, cpu.samples);
+        assert_true(d.off <= PIXELS_BESIDE * d.count && d.mean <= 1e-4);
+        destroy_stage(&s);
+    }
+    plays_hardware = casts_shadows = false;
 }
 
 /* Tiles of a texel and less, groups with tiles that are missing or on opposite faces. */
@@ -901,6 +963,7 @@ int main(int count, char **arguments)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(strategies_give_the_pictures_of_the_cpu),
         cmocka_unit_test(small_cubes_light_points_that_weigh_tiles),
+        cmocka_unit_test(calm_lobes_are_lit_alike),
         cmocka_unit_test(threads_that_share_a_point_light_it_alike),
         cmocka_unit_test(shadows_fall_where_the_cpu_has_them),
         cmocka_unit_test(rays_of_the_device_see_the_same),

@@ -59,7 +59,8 @@ static bool shines(const helio_material *material)
 
 /* Part of a point's samples that the surface technique takes. Pools of bins hold the product of light and cosine, and
  * tiles that of light and BRDF, so that BRDF samples have only the specular lobe to look after, the more the narrower
- * it is. How many they are begin_tiles() finds; here it matters whether there are any. */
+ * it is. How many they are the kernel prepare_points() finds for calm lobes, and begin_tiles() for others; here it
+ * matters whether there are any. */
 static float surface_share(const helio_pools *pools, const helio_shading_point *point, const helio_estimate_desc *desc)
 {
     if (pools->techniques == 0 || pools->is_even)
@@ -139,7 +140,7 @@ static void begin_surface_samples(gathering *g, uint32_t seed)
     expect_in_faces(g);
 }
 
-/* A point that shines, of a strategy with pools of bins and BRDF samples, reads no pool but weighs tiles. */
+/* Most points that shine, of a strategy with pools of bins and BRDF samples, read no pool but weigh tiles. */
 static void begin_tiles(gathering *g, const helio_estimate_desc *desc, uint32_t seed, float rounding)
 {
     const kernel_set *kernels = kernels_of(context_isa(g->environment->context));

@@ -31,7 +31,7 @@ typedef struct gathering {
     uint32_t pool;                      /* that technique 0 reads: the bin's, for STRATEGY_LIGHT_BINS */
     uint32_t windows[CUBE_FACES];
     uint32_t surface_seed;
-    /* Points that shine and whose pools are of bins read no pool: technique 0 then draws from the tiles as the point
+    /* Where pools are of bins most points that shine read none: technique 0 then draws from the tiles as the point
      * itself weighs them. */
     bool has_tiles;
     bool knows_diffuse; /* part of the diffuse light of such a point is known, and left out of its samples */
@@ -51,8 +51,8 @@ typedef struct surface_aim {
     uint32_t face[BLOCK_SAMPLES], row[BLOCK_SAMPLES], column[BLOCK_SAMPLES];
     uint32_t line[BLOCK_SAMPLES];     /* the row, counted through all faces */
     uint32_t index[BLOCK_SAMPLES];    /* of all texels */
-    uint32_t tile[BLOCK_SAMPLES];     /* its position; where it is wanted, of bins; and so what follows */
-    uint32_t segment[BLOCK_SAMPLES];  /* see tiles_segment() */
+    uint32_t tile[BLOCK_SAMPLES];     /* its position; only of bins, and where somebody asks, ... */
+    uint32_t segment[BLOCK_SAMPLES];  /* ... as this: see tiles_segment() */
     uint32_t mirrored[BLOCK_SAMPLES]; /* of the solid angle, see texel_weight.h */
     float u[BLOCK_SAMPLES], v[BLOCK_SAMPLES];
 } surface_aim;

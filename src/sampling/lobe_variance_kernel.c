@@ -64,7 +64,7 @@ static inline __attribute__((always_inline)) void add_parts(const sampled_lobe *
         const float part = of_lobe + POOL_VARIANCE * of_pool;
         sums->angle[i] += value * parts.angle[i];
         sums->light[i] += light;
-        sums->square[i] += density > 0.0f ? light * value * peak * part / (density * density) : 0.0f;
+        sums->square[i] += density > 0.0f ? light * (value * peak * part / (density * density)) : 0.0f;
     }
 }
 

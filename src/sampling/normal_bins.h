@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * normal_bins.h - cells of normals, each with a density of its own over the tiles of the map: light x softened cosine.
+ * The cells also are those of the directions that lobes point in, see lobe_variance.h.
  *
  * Cells are B x B on each face of a cube, of nearly equal angles. A point shakes its normal before it looks for the
  * cell, so that neighbouring cells blend into each other; the shaking knows neither cells nor faces, so nothing happens
