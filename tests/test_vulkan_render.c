@@ -245,7 +245,8 @@ static uint32_t count_weighing(const stage *s, const char *material, uint32_t po
     return weighing;
 }
 
-/* Calm points and others, of each class of lobes. */
+/* Calm points and others, of each class of lobes. With nothing but a sharp lobe a sample that meets the texel beside shows
+ * more often. */
 static void calm_lobes_are_lit_alike(void **state)
 {
     static const char *const materials[] = {"ggx:base=1,0.8,0.3,metallic=1,roughness=0.15",
@@ -267,7 +268,7 @@ static void calm_lobes_are_lit_alike(void **state)
                       d.mean, d.worst, d.off, d.count, weighing, POINTS);
         assert_true(weighing > POINTS / 10 && weighing < POINTS - POINTS / 10);
         assert_int_equal(vulkan.samples, cpu.samples);
-        assert_true(d.off <= PIXELS_BESIDE * d.count && d.mean <= 1e-4);
+        assert_true(d.off <= 2 * PIXELS_BESIDE * d.count && d.mean <= 1e-4);
         destroy_stage(&s);
     }
     plays_hardware = casts_shadows = false;
