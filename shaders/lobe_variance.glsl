@@ -9,9 +9,10 @@ float lobe_class_width(uint class_of_lobe)
     return float(1u << class_of_lobe);
 }
 
-float lobe_class_most(uint class_of_lobe)
+float lobe_class_most(uint class_of_lobe, bool is_free)
 {
-    return class_of_lobe == 0u ? 1.6 : class_of_lobe == 1u ? 0.55 : 0.2;
+    precise float most = class_of_lobe == 0u ? 1.6 : class_of_lobe == 1u ? 0.55 : 0.2, less = 0.3 * most;
+    return is_free ? most : less;
 }
 
 // Of lobes that shine alone. alpha2: GGX's alpha^2, or 1 / exponent.

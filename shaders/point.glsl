@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // point.glsl - what a point needs before its first sample: its BRDF in the map's space, expected and realised counts,
 // windows of the pools. As points_kernel.c and estimate.c, in double where these are, so that both take the same samples.
-// Needs brdf.glsl, tiles.glsl, lobe_variance.glsl and the constants LIGHT and SURFACE.
+// Needs brdf.glsl, tiles.glsl, lobe_variance.glsl and the constants LIGHT, SURFACE and
+// VISIBILITY.
 
 struct shading_point {
     uint pixel, hit, material_index;
@@ -110,7 +111,7 @@ bool is_calm(scene_material m, vec3 normal, vec3 view, uint seed)
     precise float twice = 2.0 * (normal.x * view.x + normal.y * view.y + normal.z * view.z);
     precise vec3 mirror = normal * twice - view;
     const uint cell = bin_of_normal(mirror, random);
-    precise float limit = lobe_class_most(class_of) * (0.5 + unit_float(hash(random)));
+    precise float limit = lobe_class_most(class_of, VISIBILITY == 0u) * (0.5 + unit_float(hash(random)));
     return class_of < LAYOUT_LOBE_CLASSES &&
            STATE.lobe_variances.at[LAYOUT_LOBE_CLASSES * cell + class_of] < limit;
 }

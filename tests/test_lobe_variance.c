@@ -139,6 +139,8 @@ static void even_light_is_calm_and_black_light_too(void **state)
 static const helio_material metal = {
     .kind = HELIO_MATERIAL_GGX, .diffuse = {1, 0.8f, 0.3f}, .metallic = 1, .roughness = 0.3f};
 
+static bool is_free = true;
+
 /* Seen from above, so that the lobe points along the normal. Returns of SEEDS points those that weigh tiles. */
 static uint32_t count_weighing(const world *w, const helio_material *material, vec3 normal, float brdf_share)
 {
@@ -147,7 +149,7 @@ static uint32_t count_weighing(const world *w, const helio_material *material, v
     vec3_to(normal, point.normal);
     vec3_to(normal, point.view);
     for (point.seed = 0; point.seed < SEEDS; point.seed++) {
-        const helio_estimate_desc desc = {.samples = SAMPLES, .brdf_share = brdf_share};
+        const helio_estimate_desc desc = {.samples = SAMPLES, .brdf_share = brdf_share, .is_free = is_free};
         helio_counts counts;
         assert_ok(helio_count(w->pools, &point, &desc, &counts));
         weighing += counts.pool[0] == HELIO_POOL_OF_TILES;
@@ -168,6 +170,28 @@ static void points_weigh_tiles_where_light_in_their_lobe_is_uneven(void **state)
     assert_int_equal(count_weighing(&w, &metal, to_lamp, 0), SEEDS);
     assert_int_equal(count_weighing(&w, &metal, beside, 0), SEEDS);
     assert_int_equal(count_weighing(&w, &metal, away, 0), 0);
+    destroy_world(&w);
+    free(rgb);
+}
+
+/* Where rays are to be traced more points weigh tiles. */
+static void more_points_weigh_tiles_where_something_may_be_in_the_way(void **state)
+{
+    (void)state;
+    float *rgb = make_sky(0.0f);
+    add_lamp(rgb, 300);
+    world w = make_world(rgb);
+    uint32_t weighing[2] = {0, 0};
+    for (int i = 0; i < 60; i++) {
+        const float angle = (float)(PI * i / 60);
+        for (int k = 0; k < 2; k++) {
+            is_free = k == 0;
+            weighing[k] += count_weighing(&w, &metal, (vec3){cosf(angle), sinf(angle), 0}, 0);
+        }
+    }
+    is_free = true;
+    print_message("of %d points %u weigh tiles, with rays %u\n", 60 * SEEDS, weighing[0], weighing[1]);
+    assert_true(weighing[0] > 0 && weighing[1] > weighing[0] && weighing[1] < 60 * SEEDS);
     destroy_world(&w);
     free(rgb);
 }
@@ -227,6 +251,7 @@ int main(void)
         cmocka_unit_test(all_instruction_sets_find_the_same_variances),
         cmocka_unit_test(even_light_is_calm_and_black_light_too),
         cmocka_unit_test(points_weigh_tiles_where_light_in_their_lobe_is_uneven),
+        cmocka_unit_test(more_points_weigh_tiles_where_something_may_be_in_the_way),
         cmocka_unit_test(wide_lobes_and_those_beside_a_diffuse_one_weigh_tiles),
         cmocka_unit_test(what_points_do_changes_little_by_little),
     };

@@ -229,6 +229,7 @@ static uint32_t count_weighing(const stage *s, const char *material, uint32_t po
 {
     uint64_t seed = 5;
     uint32_t weighing = 0;
+    const helio_estimate_desc desc = {.is_free = !casts_shadows};
     helio_shading_point point = {0};
     assert_ok(helio_material_parse(material, &point.material));
     for (point.seed = 0; point.seed < points; point.seed++) {
@@ -239,14 +240,14 @@ static uint32_t count_weighing(const stage *s, const char *material, uint32_t po
                             (float)random_unit(&seed) - 0.5f};
         vec3_to(normalize(normal), point.normal);
         vec3_to(normalize(normal), point.view);
-        assert_ok(helio_count(helio_renderer_pools(s->cpu), &point, NULL, &counts));
+        assert_ok(helio_count(helio_renderer_pools(s->cpu), &point, &desc, &counts));
         weighing += counts.pool[0] == HELIO_POOL_OF_TILES;
     }
     return weighing;
 }
 
-/* Calm points and others, of each class of lobes. With nothing but a sharp lobe a sample that meets the texel beside shows
- * more often. */
+/* Calm points and others, of each class of lobes. With nothing but a sharp lobe a sample that meets the texel beside
+ * shows more often. */
 static void calm_lobes_are_lit_alike(void **state)
 {
     static const char *const materials[] = {"ggx:base=1,0.8,0.3,metallic=1,roughness=0.15",

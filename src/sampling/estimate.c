@@ -83,13 +83,15 @@ static uint32_t class_of_lobe(const helio_pools *pools, const helio_material *ma
     return LOBE_UNASKED;
 }
 
-/* Counts and windows of the points, and their directions in the map's space. */
+/* Counts and windows of the points, and their directions in the map's space. is_free: nothing is in the way of their
+ * samples, so that these need not show what is known. */
 static void prepare_points(const helio_pools *pools, uint32_t count, const helio_shading_point *points,
-                           const helio_estimate_desc *desc, point_block *block)
+                           const helio_estimate_desc *desc, bool is_free, point_block *block)
 {
     static const helio_shading_point nowhere = {0}; /* what fills up registers */
     const uint32_t padded = (count + POOL_PADDING - 1) / POOL_PADDING * POOL_PADDING;
     block->count = count;
+    block->is_free = is_free;
     for (uint32_t i = 0; i < padded; i++) {
         const helio_shading_point *point = i < count ? &points[i] : &nowhere;
         point_vector_put(&block->normal, i, vec3_from(point->normal));
@@ -165,10 +167,9 @@ static void begin_tiles(gathering *g, const helio_estimate_desc *desc, uint32_t 
     g->counts.realised[TECHNIQUE_SURFACE] = desc->samples - g->counts.realised[0];
 }
 
-/* For point i of a block that is prepared. is_free: nothing is in the way of its samples, so that they need not show
- * what is known. */
+/* For point i of a block that is prepared. */
 static void begin(gathering *g, const helio_pools *pools, const helio_shading_point *point,
-                  const helio_estimate_desc *desc, const point_block *block, uint32_t i, bool is_free)
+                  const helio_estimate_desc *desc, const point_block *block, uint32_t i)
 {
     g->pools = pools;
     g->environment = pools->tables->environment;
@@ -182,7 +183,7 @@ static void begin(gathering *g, const helio_pools *pools, const helio_shading_po
         g->windows[k] = block->windows[k][i];
     g->pool = block->pools[0][i];
     g->has_tiles = block->weighs_tiles[i];
-    g->knows_diffuse = g->has_tiles && is_free && !desc->no_control;
+    g->knows_diffuse = g->has_tiles && block->is_free && !desc->no_control;
     if (g->has_tiles)
         begin_tiles(g, desc, point->seed, block->rounding[i]);
     if (g->counts.expected[TECHNIQUE_SURFACE] > 0.0f)
@@ -368,7 +369,7 @@ typedef struct point_queue {
 
 static void begin_next(point_queue *queue)
 {
-    const bool is_free = queue->desc->visibility == NULL;
+    const bool is_free = queue->block->is_free;
     if (queue->has_begun)
         return;
     queue->has_begun = true;
@@ -376,7 +377,7 @@ static void begin_next(point_queue *queue)
         queue->next++;
     if (queue->next < queue->count)
         begin(&queue->gatherings[1 - queue->turn], queue->pools, &queue->points[queue->next], queue->desc, queue->block,
-              queue->next, is_free);
+              queue->next);
 }
 
 static void step_on(point_queue *queue)
@@ -471,7 +472,7 @@ void estimate_points(const helio_pools *pools, uint32_t count, const helio_shadi
                      const helio_estimate_desc *desc, estimate_result *results)
 {
     point_block block;
-    prepare_points(pools, count, points, desc, &block);
+    prepare_points(pools, count, points, desc, desc->visibility == NULL, &block);
     memset(results, 0, count * sizeof *results);
     if (desc->visibility == NULL && has_points_of_pools(&block))
         estimate_from_pools(pools, desc->samples, points, &block, results);
@@ -605,8 +606,8 @@ static helio_status begin_checked(const helio_pools *pools, const helio_shading_
     if (given_point == NULL)
         return fail(HELIO_ERR_ARGUMENT, "an estimate needs a shading point");
     HELIO_TRY(resolve_points(1, given_point, &point));
-    prepare_points(pools, 1, &point, &desc, &block);
-    begin(g, pools, &point, &desc, &block, 0, desc.visibility == NULL && desc.is_free);
+    prepare_points(pools, 1, &point, &desc, desc.visibility == NULL && desc.is_free, &block);
+    begin(g, pools, &point, &desc, &block, 0);
     if (control == NULL)
         return HELIO_OK;
     memset(control, 0, 3 * sizeof *control);

@@ -8,6 +8,7 @@
 #ifndef HELIOSTAT_SRC_LOBE_VARIANCE_H
 #define HELIOSTAT_SRC_LOBE_VARIANCE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* Lobes come in classes by their width, each twice as wide (in square) as the one before, the first as wide as a tile.
@@ -26,10 +27,11 @@ static inline float lobe_class_width(uint32_t class)
 }
 
 /* The variance from which on it pays to weigh tiles, which resolve wide lobes better: by what both leave, and the time
- * that they take. */
-static inline float lobe_class_most(uint32_t class)
+ * that they take. That is little beside the time of rays, where it is not known that nothing is in the way. */
+static inline float lobe_class_most(uint32_t class, bool is_free)
 {
-    return class == 0 ? 1.6f : class == 1 ? 0.55f : 0.2f;
+    const float most = class == 0 ? 1.6f : class == 1 ? 0.55f : 0.2f;
+    return is_free ? most : 0.3f * most;
 }
 
 /* Of lobes that shine alone. alpha2: GGX's alpha^2, or 1 / exponent; edge: tiles.edge. */

@@ -21,6 +21,7 @@ typedef struct point_vectors {
 /* Arrays have room for whole registers: kernels compute points past count, too, which must hold numbers. */
 typedef struct point_block {
     uint32_t count;
+    bool is_free; /* nothing is in the way of samples, so that they need not show what is known */
     point_vectors normal, geometric_normal, view; /* in world space, until a kernel turns them to the map's */
     alignas(64) uint32_t seed[POINT_BLOCK];
     alignas(64) float surface_share[POINT_BLOCK]; /* part of its samples that the surface technique takes */

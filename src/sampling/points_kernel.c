@@ -67,7 +67,7 @@ static bool is_calm(const normal_bins *bins, const point_block *block, uint32_t 
     const vec3 mirror = add_scaled(scale(view, -1.0f), normal, 2.0f * dot(normal, view));
     const uint32_t cell = normal_bins_cell(bins->per_edge, normal_bins_shaken(bins, mirror, random));
     const float variance = bins->lobe_variances[cell * LOBE_CLASSES + block->lobe_class[i]];
-    return variance < lobe_class_most(block->lobe_class[i]) * (0.5f + unit_float(hash(random)));
+    return variance < lobe_class_most(block->lobe_class[i], block->is_free) * (0.5f + unit_float(hash(random)));
 }
 
 /* Which points weigh tiles. They find the surface's share later, those in calm lobes have it here. */
