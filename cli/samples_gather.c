@@ -213,7 +213,7 @@ static helio_status gather_step(samples_findings *found, render_job *job, const 
 
 static void forget(samples_findings *found)
 {
-    found->sample_count = found->pooled = found->pool_length = 0;
+    found->sample_count = found->pooled = 0;
     found->reads_tiles = found->reads_pools = false;
     found->all = (technique_count){0};
     memset(found->techniques, 0, sizeof found->techniques);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // point.glsl - what a point needs before its first sample: its BRDF in the map's space, expected and realised counts,
 // windows of the pools. As points_kernel.c and estimate.c, in double where these are, so that both take the same samples.
-// Needs brdf.glsl, tiles.glsl, lobe_variance.glsl and the constants LIGHT, SURFACE and
-// VISIBILITY.
+// Needs brdf.glsl, tiles.glsl, lobe_variance.glsl and the constants LIGHT, SURFACE and VISIBILITY.
 
 struct shading_point {
     uint pixel, hit, material_index;

@@ -136,7 +136,9 @@ static void compare_bins(const normal_bins *a, const normal_bins *b)
     assert_memory_equal(a->sums, b->sums, (size_t)a->count * (a->tiles->count + 1) * sizeof *a->sums);
     assert_memory_equal(a->shares, b->shares, a->count * sizeof *a->shares);
     assert_memory_equal(a->list_starts, b->list_starts, sizeof a->list_starts);
-    assert_memory_equal(a->lobe_variances, b->lobe_variances, a->count * LOBE_CLASSES * sizeof *a->lobe_variances);
+    assert_true((a->lobe_variances == NULL) == (b->lobe_variances == NULL));
+    if (a->lobe_variances != NULL)
+        assert_memory_equal(a->lobe_variances, b->lobe_variances, a->count * LOBE_CLASSES * sizeof *a->lobe_variances);
 }
 
 static const helio_strategy strategies[] = {

@@ -386,7 +386,7 @@ static void bins_are_cells_around_their_centres(void **state)
     for (uint32_t per_edge = 1; per_edge <= 32; per_edge += per_edge / 3 + 1) {
         normal_bins *bins;
         helio_context *context = make_context(1, NULL);
-        assert_ok(normal_bins_create(context, per_edge, 8, 64, &bins));
+        assert_ok(normal_bins_create(context, per_edge, 8, 64, false, &bins));
         assert_int_equal(bins->count, 6 * per_edge * per_edge);
         for (uint32_t i = 0; i < bins->count; i++)
             assert_int_equal(normal_bins_cell(per_edge, bins->bins[i].centre), i);

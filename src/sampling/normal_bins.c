@@ -71,7 +71,7 @@ static uint32_t list_capacity(const normal_bins *b)
 }
 
 helio_status normal_bins_create(helio_context *context, uint32_t per_edge, uint32_t size, uint32_t pool_length,
-                                normal_bins **out)
+                                bool has_lobes, normal_bins **out)
 {
     normal_bins *b = context_allocate(context, 1, sizeof *b);
     if (b == NULL)
@@ -86,10 +86,12 @@ helio_status normal_bins_create(helio_context *context, uint32_t per_edge, uint3
         b->bins = context_allocate(context, b->count, sizeof *b->bins);
         b->sums = context_allocate(context, b->count, (b->tiles->count + 1) * sizeof *b->sums);
         b->shares = context_allocate(context, b->count, sizeof *b->shares);
-        b->lobe_variances = context_allocate(context, b->count, LOBE_CLASSES * sizeof *b->lobe_variances);
+        if (has_lobes)
+            b->lobe_variances = context_allocate(context, b->count, LOBE_CLASSES * sizeof *b->lobe_variances);
         b->capacity = list_capacity(b);
         b->listed = context_allocate(context, b->capacity, sizeof *b->listed);
-        if (b->bins == NULL || b->sums == NULL || b->shares == NULL || b->lobe_variances == NULL || b->listed == NULL)
+        if (b->bins == NULL || b->sums == NULL || b->shares == NULL || (has_lobes && b->lobe_variances == NULL) ||
+            b->listed == NULL)
             status = HELIO_ERR_MEMORY;
     }
     if (status != HELIO_OK) {
@@ -123,7 +125,8 @@ static void weigh_bin(void *data, size_t bin)
     const kernel_set *kernels = kernels_of(context_isa(b->context));
     const uint32_t total = kernels->weigh_tiles(b->tiles, &b->bins[bin], sums);
     b->shares[bin] = total != 0 ? 1.0f / (float)total : 0.0f;
-    kernels->find_lobe_variances(b->tiles, b->bins[bin].centre, b->lobe_variances + bin * LOBE_CLASSES);
+    if (b->lobe_variances != NULL)
+        kernels->find_lobe_variances(b->tiles, b->bins[bin].centre, b->lobe_variances + bin * LOBE_CLASSES);
 }
 
 /* ---- lists ---- */

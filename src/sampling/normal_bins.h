@@ -45,7 +45,7 @@ typedef struct normal_bins {
     normal_bin *bins;      /* [count] */
     uint32_t *sums;        /* [count][tiles + 1]: prefix sums of the weights of the tiles, in their order */
     float *shares;         /* [count]: 1 / the sum of all, or 0 */
-    float *lobe_variances; /* [count][LOBE_CLASSES]: of lobes about the centre of each */
+    float *lobe_variances; /* [count][LOBE_CLASSES]: of lobes about the centre of each; or NULL, nobody will ask */
     uint64_t frame;        /* of the tables, when weighed */
     /* Samples of each tile, from which all pools are made. A list is a few times as long as what any pool takes from
      * it. [starts[count of tiles]], at most `capacity`. */
@@ -54,9 +54,9 @@ typedef struct normal_bins {
     listed_sample *listed;
 } normal_bins;
 
-/* per_edge: B. size: of the cube. pool_length: of the pools to be made. */
+/* per_edge: B. size: of the cube. pool_length: of the pools to be made. has_lobes: somebody asks for lobe_variances. */
 helio_status normal_bins_create(helio_context *context, uint32_t per_edge, uint32_t size, uint32_t pool_length,
-                                normal_bins **out);
+                                bool has_lobes, normal_bins **out);
 void normal_bins_destroy(normal_bins *b);
 
 /* Weighs the tiles of the tables' frame, unless that is done. No memory is taken. */

@@ -80,8 +80,8 @@ helio_status helio_pools_create(helio_tables *tables, const helio_pools_desc *gi
     choose_sizes(pools, &desc);
     helio_status status = allocate_arrays(pools);
     if (status == HELIO_OK && pools->parts.light == STRATEGY_LIGHT_BINS)
-        status =
-            normal_bins_create(tables->environment->context, desc.bins, tables->size, pools->pool_length, &pools->bins);
+        status = normal_bins_create(tables->environment->context, desc.bins, tables->size, pools->pool_length,
+                                    pools->parts.surface == STRATEGY_SURFACE_BRDF, &pools->bins);
     if (status == HELIO_OK && pools->bins != NULL)
         status = control_create(tables->environment->context, pools->bins, &pools->control);
     if (status != HELIO_OK) {

@@ -26,6 +26,12 @@ static bool is_automatic(const vulkan_light *light)
     return light->shape->is_automatic;
 }
 
+/* Will points ask how uneven the light in their lobes is? */
+static bool has_lobes(const vulkan_light *light)
+{
+    return light->shape->bins->lobe_variances != NULL;
+}
+
 static helio_status create_buffers(vulkan_light *light)
 {
     const normal_bins *bins = light->shape->bins;
@@ -46,7 +52,8 @@ static helio_status create_buffers(vulkan_light *light)
         {&light->bin_sums, BUFFER_ON_DEVICE, (uint64_t)bins->count * (t->count + 1), sizeof(uint32_t),
          "the sums of bins"},
         {&light->bin_shares, BUFFER_ON_DEVICE, bins->count, sizeof(float), "the shares of bins"},
-        {&light->lobe_variances, BUFFER_ON_DEVICE, bins->count, LOBE_CLASSES * sizeof(float), "the light in lobes"},
+        {&light->lobe_variances, BUFFER_ON_DEVICE, has_lobes(light) ? bins->count : 0, LOBE_CLASSES * sizeof(float),
+         "the light in lobes"},
         {&light->greatest, BUFFER_ON_DEVICE, t->count, sizeof(float), "the probabilities of tiles"},
         {&light->list_starts, BUFFER_ON_DEVICE, t->count + 1, sizeof(uint32_t), "the lengths of lists"},
         {&light->moments, BUFFER_ON_DEVICE, is_automatic(light) ? t->count : 0, 3 * sizeof(double),
@@ -215,7 +222,8 @@ static void record_weights(vulkan_light *light, vulkan_commands *commands)
     commands_barrier(commands);
     commands_dispatch(commands, light->passes[PASS_KNOWN], &push, (state->bin_count + at_once - 1) / at_once);
     commands_dispatch(commands, light->passes[PASS_BINS], &push, state->bin_count);
-    commands_dispatch(commands, light->passes[PASS_LOBES], &push, state->bin_count);
+    if (has_lobes(light))
+        commands_dispatch(commands, light->passes[PASS_LOBES], &push, state->bin_count);
     commands_barrier(commands);
     commands_dispatch(commands, light->passes[PASS_GREATEST], &greatest, groups(state->tile_count));
     commands_barrier(commands);
