@@ -7,7 +7,7 @@
 
 /* Is the light of each face so even that stratified samples of the surface, which never look at it, have the smaller
  * error? True for constant maps, gradients, overcast skies; false as soon as there is a lamp. Tiles and tables must be
- * those of the current frame. Looks at few texels, unless the map is even. */
+ * those of the current frame. Looks at no texel where tiles differ enough from their neighbours. */
 bool evenness_holds(const tiles *t, const helio_tables *tables);
 
 #endif

@@ -182,7 +182,7 @@ static void find_row_densities(helio_tables *tables, size_t face)
     }
 }
 
-static double flux_of(const helio_tables *tables, row_sum sum)
+double tables_flux_of(const helio_tables *tables, row_sum sum)
 {
     return ldexp((double)sum.sum, -sum.exponent) * 4.0 / ((double)tables->size * (double)tables->size);
 }
@@ -191,7 +191,8 @@ static void find_fluxes(helio_tables *tables)
 {
     const size_t size = tables->size;
     for (size_t face = 0; face < CUBE_FACES; face++)
-        tables->flux[face] = flux_of(tables, tables_sum_rows(tables->row_fluxes + face * size, tables->size, NULL));
+        tables->flux[face] =
+            tables_flux_of(tables, tables_sum_rows(tables->row_fluxes + face * size, tables->size, NULL));
 }
 
 /* A little more, so that rounding leaves nothing of a constant map. */
@@ -212,9 +213,9 @@ static void build_face(void *data, size_t face)
     find_row_densities(tables, face);
     tables->face_sums[face] = weight;
     if (tables->weighting == HELIO_WEIGHTING_SOLID_ANGLE)
-        tables->flux[face] = flux_of(tables, weight);
+        tables->flux[face] = tables_flux_of(tables, weight);
     tables->worth[face] =
-        tables->weighting == HELIO_WEIGHTING_COMPENSATED ? flux_of(tables, weight) : tables->flux[face];
+        tables->weighting == HELIO_WEIGHTING_COMPENSATED ? tables_flux_of(tables, weight) : tables->flux[face];
 }
 
 helio_status helio_tables_update(helio_tables *tables)

@@ -94,6 +94,9 @@ static inline float tables_face_probability(const helio_tables *tables, uint32_t
  * wanted. */
 row_sum tables_sum_rows(const row_sum *rows, uint32_t count, uint32_t *sums);
 
+/* The integral that a sum of weights by solid angle stands for; radiance unit x sr. */
+double tables_flux_of(const helio_tables *tables, row_sum sum);
+
 /* Where x, a fraction of 2^32 that falls into a cell of prefix sums [count + 1], lies inside of that cell: a fraction
  * of 2^32 again. The sums may be a piece of longer ones, which does not begin with 0. All in integers. */
 static inline uint32_t tables_fraction_within(const uint32_t *sums, uint32_t count, uint32_t cell, uint32_t x)
