@@ -47,6 +47,12 @@ vec3 control_difference(const light_control *c, uint32_t bin, uint32_t first, ui
 /* x, or 0: sums of light next to the greatest of floats are infinite, and say nothing. */
 float control_finite(float x);
 
+/* Beyond this cosine, above 0 or below, all normals of a bin are on the same side of a tile. */
+static inline float control_half(const normal_bin *bin)
+{
+    return 0.4f * bin->reach;
+}
+
 /* a and c for a bin and a tile whose centres' cosine is given: least squares over the cosines that normals and
  * directions mostly have, about as many each within half of what they can be apart. */
 typedef struct control_line {
@@ -55,7 +61,7 @@ typedef struct control_line {
 
 static inline control_line control_line_of(const normal_bin *bin, float cosine)
 {
-    const float half = 0.4f * bin->reach;
+    const float half = control_half(bin);
     float t = cosine / half;
     t = t < 1.0f ? t : 1.0f;
     t = t > -1.0f ? t : -1.0f;

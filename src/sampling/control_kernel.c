@@ -3,6 +3,9 @@
  * Sums over texels and tiles for the control variate. */
 #include "sampling/control.h"
 #include "sampling/kernels.h"
+#include "sampling/tile_sums.h"
+
+#include <string.h>
 
 /* The integrals of direction over a texel of width d are those of (u, v, 1) (1 + u^2 + v^2)^-2 over its square: the
  * values at the centre with the term of d^2 of Taylor's series, which leaves 1e-6 of them where a face has 32 cells
@@ -77,50 +80,77 @@ colour_sums KERNEL(sum_columns)(const column_colours *columns, const float *u, u
     return sums;
 }
 
-/* Few enough that floats hold their sum; a multiple of all registers. */
-enum { TILES_SUMMED = 96 };
+/* ---- the known light of bins ---- */
 
-static void find_lines(const tiles *t, const normal_bin *bin, float *restrict slopes, float *restrict offsets)
+/* In sixteen sums each: few enough numbers for each that floats hold them. */
+typedef struct known_sums {
+    alignas(64) float rows[4][3][TILE_GROUP];
+} known_sums;
+
+/* Groups of a run: where all tiles are in front of all normals, so that slopes are 1 and offsets 0, as 1 or 0; and
+ * where some are neither there nor behind all normals. */
+typedef struct run_sides {
+    alignas(64) float in_front[TILE_RUN];
+    alignas(64) int32_t between[TILE_RUN];
+} run_sides;
+
+static void find_sides(const tile_groups *g, const normal_bin *bin, uint32_t first, run_sides *sides)
 {
     const normal_bin b = *bin;
-    const uint32_t count = t->count;
+    const float half = control_half(bin);
 #pragma omp simd
-    for (uint32_t i = 0; i < count; i++) {
-        const control_line line =
-            control_line_of(&b, b.centre.x * t->x[i] + b.centre.y * t->y[i] + b.centre.z * t->z[i]);
-        slopes[i] = line.slope;
-        offsets[i] = line.offset;
+    for (uint32_t i = 0; i < TILE_RUN; i++) {
+        const float cosine = b.centre.x * g->x[first + i] + b.centre.y * g->y[first + i] + b.centre.z * g->z[first + i];
+        const float apart = g->inner[first + i] + half;
+        sides->in_front[i] = cosine >= apart ? 1.0f : 0.0f;
+        sides->between[i] = cosine < apart && cosine > -apart;
     }
 }
 
-static void add_tiles(const float *restrict factors, const float (*light)[TILES_MOST], uint32_t first, uint32_t end,
-                      double sums[3])
+static inline void add_products(const float *restrict factors, const float *restrict light, float *restrict sums)
 {
-    const float *restrict reds = light[0], *restrict greens = light[1], *restrict blues = light[2];
-    float red = 0, green = 0, blue = 0;
-#pragma omp simd reduction(+ : red, green, blue)
-    for (uint32_t i = first; i < end; i++) {
-        red += factors[i] * reds[i];
-        green += factors[i] * greens[i];
-        blue += factors[i] * blues[i];
+#pragma omp simd
+    for (uint32_t i = 0; i < TILE_GROUP; i++)
+        sums[i] += factors[i] * light[i];
+}
+
+static void add_groups(const tile_groups *g, const run_sides *sides, uint32_t first, known_sums *sums)
+{
+    for (int axis = 0; axis < 3; axis++)
+        for (int c = 0; c < 3; c++)
+            add_products(sides->in_front, g->radiance[c][axis] + first, sums->rows[axis][c]);
+}
+
+static void add_tiles(const tiles *t, const normal_bin *bin, uint32_t first, known_sums *sums)
+{
+    const normal_bin b = *bin;
+    alignas(64) float slopes[TILE_GROUP], offsets[TILE_GROUP];
+#pragma omp simd
+    for (uint32_t i = 0; i < TILE_GROUP; i++) {
+        const control_line line = control_line_of(&b, b.centre.x * t->x[first + i] + b.centre.y * t->y[first + i] +
+                                                          b.centre.z * t->z[first + i]);
+        slopes[i] = line.slope;
+        offsets[i] = line.offset;
     }
-    sums[0] += (double)red;
-    sums[1] += (double)green;
-    sums[2] += (double)blue;
+    for (int row = 0; row < 4; row++)
+        for (int c = 0; c < 3; c++)
+            add_products(row < 3 ? slopes : offsets, t->colours.light[row][c] + first, sums->rows[row][c]);
 }
 
 void KERNEL(know_bin)(const tiles *t, const normal_bin *bin, control_matrix *known)
 {
-    alignas(64) float slopes[TILES_MOST];
-    alignas(64) float offsets[TILES_MOST];
-    find_lines(t, bin, slopes, offsets);
+    known_sums sums;
+    run_sides sides;
+    memset(&sums, 0, sizeof sums);
+    for (uint32_t first = 0; first < TILE_GROUPS; first += TILE_RUN) {
+        find_sides(&t->groups, bin, first, &sides);
+        add_groups(&t->groups, &sides, first, &sums);
+        for (uint32_t rest = bits_of(sides.between); rest != 0; rest &= rest - 1)
+            add_tiles(t, bin, (first + (uint32_t)__builtin_ctz(rest)) * TILE_GROUP, &sums);
+    }
     for (int row = 0; row < 4; row++) {
-        double sums[3] = {0};
-        for (uint32_t first = 0; first < t->count; first += TILES_SUMMED)
-            add_tiles(row < 3 ? slopes : offsets, t->colours.light[row], first,
-                      first + TILES_SUMMED < t->count ? first + TILES_SUMMED : t->count, sums);
         for (int c = 0; c < 3; c++)
-            known->rows[row][c] = (float)sums[c];
+            known->rows[row][c] = sum_of_tiles(sums.rows[row][c]);
         known->rows[row][3] = 0.0f;
     }
 }

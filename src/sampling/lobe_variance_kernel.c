@@ -16,13 +16,13 @@ static const float POOL_VARIANCE = 0.5f;
 /* Of lobe_at() over all directions. */
 static const float LOBE_INTEGRAL = 4.0f * (float)PI;
 
-/* A lobe, and the samples of a point in it: the lobe's part of them over the lobe's integral, the pool's part over the
- * pool's light. */
-typedef struct sampled_lobe {
+/* Lobes of all classes about one axis, and the samples of a point in each: the lobe's part of them over the lobe's
+ * integral, the pool's part over the pool's light. */
+typedef struct sampled_lobes {
     vec3 axis;
-    float width;
+    float widths[LOBE_CLASSES];
     float by_lobe, by_pool;
-} sampled_lobe;
+} sampled_lobes;
 
 /* In sixteen sums each. */
 typedef struct lobe_sums {
@@ -49,26 +49,31 @@ static inline float lobe_at(float cosine, float width)
     return width / (rest * rest);
 }
 
-/* counted: 1 or 0. */
-static inline __attribute__((always_inline)) void add_parts(const sampled_lobe *given, const sky_parts *of_sky,
+/* counted: 1 or 0. sums: of each class. */
+static inline __attribute__((always_inline)) void add_parts(const sampled_lobes *given, const sky_parts *of_sky,
                                                             const float *restrict counted, lobe_sums *restrict sums)
 {
-    const sampled_lobe lobe = *given;
+    const sampled_lobes lobes = *given;
     const sky_parts parts = *of_sky;
 #pragma omp simd
     for (uint32_t i = 0; i < TILE_GROUP; i++) {
-        const float width = lobe.width + (parts.variance != NULL ? parts.variance[i] : 0.0f);
-        const float value = counted[i] * lobe_at(cosine_to(lobe.axis, &parts, i), width);
-        const float light = value * parts.light[i], peak = parts.peak[i];
-        const float of_lobe = lobe.by_lobe * value, of_pool = lobe.by_pool * peak, density = of_lobe + of_pool;
-        const float part = of_lobe + POOL_VARIANCE * of_pool;
-        sums->angle[i] += value * parts.angle[i];
-        sums->light[i] += light;
-        sums->square[i] += density > 0.0f ? light * (value * peak * part / (density * density)) : 0.0f;
+        const float cosine = cosine_to(lobes.axis, &parts, i), peak = parts.peak[i], of_pool = lobes.by_pool * peak;
+        const float variance = parts.variance != NULL ? parts.variance[i] : 0.0f;
+#pragma GCC unroll 3
+        for (uint32_t class = 0; class < LOBE_CLASSES; class ++) {
+            const float value = counted[i] * lobe_at(cosine, lobes.widths[class] + variance);
+            const float light = value * parts.light[i];
+            const float of_lobe = lobes.by_lobe * value, density = of_lobe + of_pool;
+            const float safe = density > 0.0f ? density : 1.0f; /* 0 where both the lobe and the light are */
+            const float part = of_lobe + POOL_VARIANCE * of_pool;
+            sums[class].angle[i] += value * parts.angle[i];
+            sums[class].light[i] += light;
+            sums[class].square[i] += light * (value * peak * part / (safe * safe));
+        }
     }
 }
 
-static void add_tiles(const sampled_lobe *lobe, const tiles *t, uint32_t group, lobe_sums *sums)
+static void add_tiles(const sampled_lobes *lobes, const tiles *t, uint32_t group, lobe_sums *sums)
 {
     static const float all[TILE_GROUP] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
     const uint32_t first = group * TILE_GROUP;
@@ -78,11 +83,11 @@ static void add_tiles(const sampled_lobe *lobe, const tiles *t, uint32_t group, 
                              .angle = t->angle + first,
                              .light = t->light + first,
                              .peak = t->peak + first};
-    add_parts(lobe, &parts, all, sums);
+    add_parts(lobes, &parts, all, sums);
 }
 
 /* Of a run of groups those that are far, and the tiles of the others. */
-static void add_run(const sampled_lobe *lobe, const tiles *t, uint32_t first, lobe_sums *sums)
+static void add_run(const sampled_lobes *lobes, const tiles *t, uint32_t first, lobe_sums *sums)
 {
     const tile_groups *g = &t->groups;
     const sky_parts middles = {.x = g->x + first, .y = g->y + first, .z = g->z + first};
@@ -97,35 +102,35 @@ static void add_run(const sampled_lobe *lobe, const tiles *t, uint32_t first, lo
     float is_far[TILE_RUN];
 #pragma omp simd
     for (uint32_t i = 0; i < TILE_RUN; i++) {
-        is_near[i] = cosine_to(lobe->axis, &middles, i) > NEAR_COSINE;
+        is_near[i] = cosine_to(lobes->axis, &middles, i) > NEAR_COSINE;
         is_far[i] = is_near[i] ? 0.0f : 1.0f;
     }
-    add_parts(lobe, &parts, is_far, sums);
+    add_parts(lobes, &parts, is_far, sums);
     for (uint32_t rest = bits_of(is_near); rest != 0; rest &= rest - 1)
-        add_tiles(lobe, t, first + (uint32_t)__builtin_ctz(rest), sums);
+        add_tiles(lobes, t, first + (uint32_t)__builtin_ctz(rest), sums);
 }
 
 /* 0 under a black sky. */
-static float find_variance(const sampled_lobe *lobe, const tiles *t)
+static float variance_of(const lobe_sums *sums)
 {
-    lobe_sums sums;
-    memset(&sums, 0, sizeof sums);
-    for (uint32_t run = 0; run < TILE_RUNS; run++)
-        add_run(lobe, t, run * TILE_RUN, &sums);
-    const float light = sum_of_tiles(sums.light), square = sum_of_tiles(sums.square);
+    const float light = sum_of_tiles(sums->light), square = sum_of_tiles(sums->square);
     if (!(light > 0.0f))
         return 0.0f;
-    return square / light * (sum_of_tiles(sums.angle) / LOBE_INTEGRAL) / light - 1.0f;
+    return square / light * (sum_of_tiles(sums->angle) / LOBE_INTEGRAL) / light - 1.0f;
 }
 
 void KERNEL(find_lobe_variances)(const tiles *t, vec3 axis, float variances[LOBE_CLASSES])
 {
     const float irradiance = 0.5f * sum_of_groups(t->groups.light); /* of a surface that faces most of it */
-    for (uint32_t class = 0; class < LOBE_CLASSES; class ++) {
-        const sampled_lobe lobe = {.axis = axis,
-                                   .width = lobe_class_width(class) * t->edge * t->edge,
-                                   .by_lobe = (1.0f - LOBE_POOL_PART) / LOBE_INTEGRAL,
-                                   .by_pool = irradiance > 0.0f ? LOBE_POOL_PART / irradiance : 0.0f};
-        variances[class] = find_variance(&lobe, t);
-    }
+    sampled_lobes lobes = {.axis = axis,
+                           .by_lobe = (1.0f - LOBE_POOL_PART) / LOBE_INTEGRAL,
+                           .by_pool = irradiance > 0.0f ? LOBE_POOL_PART / irradiance : 0.0f};
+    lobe_sums sums[LOBE_CLASSES];
+    for (uint32_t class = 0; class < LOBE_CLASSES; class ++)
+        lobes.widths[class] = lobe_class_width(class) * t->edge * t->edge;
+    memset(sums, 0, sizeof sums);
+    for (uint32_t run = 0; run < TILE_RUNS; run++)
+        add_run(&lobes, t, run * TILE_RUN, sums);
+    for (uint32_t class = 0; class < LOBE_CLASSES; class ++)
+        variances[class] = variance_of(&sums[class]);
 }
