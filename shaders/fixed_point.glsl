@@ -2,12 +2,6 @@
 // fixed_point.glsl - weights as integers, as src/sampling/fixed_point.h and tables.c have them: the same bits on every
 // device. Powers of two are made from bits, and `precise` keeps multiplications and additions apart.
 
-// Position of the highest bit of an integer that is not 0.
-int highest_bit(uint x)
-{
-    return findMSB(x);
-}
-
 // A row holds integers below 2^bits; their sum, rounding included, stays below 2^32.
 int summand_bits(uint count)
 {

@@ -264,7 +264,7 @@ struct layout_state {
     ADDRESS(uints, marginals);     /* [6][R + 1] */
     ADDRESS(floats, row_densities);
     ADDRESS(row_sums, weights);    /* [6][R] */
-    ADDRESS(row_sums, fluxes);     /* the same array unless the weighting is the paper's */
+    ADDRESS(row_sums, fluxes);     /* the same array for LAYOUT_BY_SOLID_ANGLE */
     ADDRESS(sums_of_map, sums);
     ADDRESS(vectors, pools);       /* [LAYOUT_POOL_PLANES][pool_stride] */
     ADDRESS(uints, tile_grid);     /* [tiles]: (face x T + row) x T + column of the tile at a position */

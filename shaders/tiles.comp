@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // A tile for each work group: prefix sums over its part of the rows, and what a unit of weight in each part adds to the
-// density. As sum_tile() in src/sampling/tiles.c.
+// density. As sum_row_of_tiles() in src/sampling/tiles.c.
 #include "common.glsl"
 #include "random.glsl"
 #include "cube.glsl"

@@ -662,8 +662,14 @@ static void frames_stop_when_told_to(void **state)
     double mean = 0, whole = 0;
     for (size_t i = 0; i < WIDTH * HEIGHT; i++)
         mean += (double)picture.rgba[4 * i] / (WIDTH * HEIGHT);
+    s.frame.no_picture = true;
+    assert_ok(helio_renderer_render(s.vulkan, &s.frame, &info));
+    assert_true(info.stopped);
+    assert_int_equal(calls, 3);
+    s.frame.no_picture = false;
     s.frame.progress = NULL;
     assert_ok(helio_renderer_render(s.vulkan, &s.frame, &info)); /* and go on as if nothing had been */
+    assert_false(info.stopped);
     for (size_t i = 0; i < WIDTH * HEIGHT; i++)
         whole += (double)picture.rgba[4 * i] / (WIDTH * HEIGHT);
     assert_true(fabs(mean - whole) < 0.1 * whole);
@@ -693,6 +699,37 @@ static VkResult VKAPI_CALL lose_submit(VkQueue queue, uint32_t count, const VkSu
     (void)infos;
     (void)fence;
     return VK_ERROR_DEVICE_LOST;
+}
+
+static PFN_vkQueueSubmit real_submit;
+static bool refuses_frames;
+
+/* The work of frames waits for the map that was sent beside it; other work waits for nothing. */
+static VkResult VKAPI_CALL refuse_frames(VkQueue queue, uint32_t count, const VkSubmitInfo *infos, VkFence fence)
+{
+    if (refuses_frames && infos->waitSemaphoreCount > 0)
+        return VK_ERROR_OUT_OF_HOST_MEMORY;
+    return real_submit(queue, count, infos, fence);
+}
+
+/* Though the map of each was on its way. The validation layer has nothing to say of what follows, nor of the end. */
+static void frames_that_fail_leave_the_next_alone(void **state)
+{
+    const helio_renderer_desc desc = {.strategy = HELIO_STRATEGY_FACE, .spp = 4, .pool_length = 64};
+    (void)state;
+    for (int is_last = 0; is_last < 2; is_last++) {
+        stage s = make_stage(MATERIALS[0], &desc);
+        light_stage_with(&s, 1);
+        real_submit = s.device->vk.QueueSubmit;
+        s.device->vk.QueueSubmit = refuse_frames;
+        refuses_frames = true;
+        for (int i = 0; i < 3; i++)
+            assert_int_equal(helio_renderer_render(s.vulkan, &s.frame, NULL), HELIO_ERR_MEMORY);
+        refuses_frames = false;
+        for (int i = 0; i < 3 && !is_last; i++)
+            expect_same(&s, ROUNDING, "the frame after some that failed");
+        destroy_stage(&s);
+    }
 }
 
 /* The program's frames: test_vulkan_program. */
@@ -980,6 +1017,7 @@ int main(int count, char **arguments)
         cmocka_unit_test(black_maps_give_black_pictures),
         cmocka_unit_test(frames_stop_when_told_to),
         cmocka_unit_test(what_a_device_cannot_do_is_told),
+        cmocka_unit_test(frames_that_fail_leave_the_next_alone),
         cmocka_unit_test(a_lost_device_is_told_and_the_picture_stays),
         cmocka_unit_test(renderers_come_and_go_on_a_device),
         cmocka_unit_test(frames_take_no_memory),

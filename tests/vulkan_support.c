@@ -89,8 +89,12 @@ void fill_cube(helio_environment *environment, map_kind kind, uint64_t seed)
 void *read_buffer(vulkan_commands *commands, const vulkan_buffer *buffer, size_t bytes)
 {
     void *data = malloc(bytes);
+    vulkan_buffer staging;
     assert_non_null(data);
-    assert_ok(commands_download(commands, buffer, data, bytes));
+    assert_ok(buffer_create(commands->device, BUFFER_READBACK, bytes, 1, "a read-back", &staging));
+    assert_ok(commands_copy_now(commands, buffer, &staging, bytes));
+    memcpy(data, staging.mapped, bytes);
+    buffer_destroy(commands->device, &staging);
     return data;
 }
 

@@ -13,7 +13,8 @@
  *  - Array shapes are written [rows][columns][channels], row-major, without padding.
  *  - Directions are unit vectors, right-handed, +Y up. Densities are per steradian.
  *    Radiance is linear Rec. 709 RGB in the caller's own unit; results carry the same unit.
- *  - Memory is taken in create and load. Functions named update, draw, gather, estimate, render and measure take none.
+ *  - Memory is taken in create and load. Functions named update, draw, gather, estimate, render and measure take none,
+ *    but for what helio_environment_update() and helio_sky_update() say of devices.
  *  - Functions that take a const object may run at the same time on many threads; those that take a
  *    non-const object need that object, and the objects made from it, to themselves.
  */

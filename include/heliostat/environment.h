@@ -69,7 +69,7 @@ HELIO_API void helio_environment_destroy(helio_environment *environment);
  * Without info the cube may be made elsewhere: where a renderer with a device lives, the first one of the environment,
  * it sends the map as it is and makes the cube there, and helio_frame_info tells what was found. A cube on the CPU is
  * then made when something wants to read it, within that call, which must be on a thread that could update the
- * environment. */
+ * environment. The first map of each shape, and of each format of numbers, takes memory of the device then. */
 HELIO_API helio_status helio_environment_update(helio_environment *environment, const float *rgb,
                                                 helio_environment_info *info);
 

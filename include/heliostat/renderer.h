@@ -52,9 +52,9 @@ typedef struct helio_renderer_desc {
 typedef struct helio_frame_desc {
     helio_camera camera; /* required */
     uint32_t seed;
-    /* Called about ten times a second or more often, on the calling thread, with the part done, 0..1. false stops the
-     * frame: HELIO_OK is returned and each pixel holds the samples that it got so far (none: black, alpha 0). Default:
-     * none. */
+    /* Called about ten times a second or more often, on the calling thread, with the part done, 0..1; where a device
+     * computes, after each step, of which there are helio_renderer_steps(). false stops the frame: HELIO_OK is returned
+     * and each pixel holds the samples that it got so far (none: black, alpha 0). Default: none. */
     bool (*progress)(void *user, float done);
     void *user;
     bool no_picture; /* where a device computes, leave the picture there: helio_renderer_picture() keeps what it had.

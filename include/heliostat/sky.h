@@ -60,7 +60,8 @@ HELIO_API void helio_sky_destroy(helio_sky *sky);
  * then night. A texel has the sky's radiance at its centre (of small cubes, its average) and the exact part of the
  * sun's light that it gets. The same bits on any number of threads and with every instruction set. The environment may
  * be one that was created without a map (width = height = 0). info may be NULL: then a device may make the cube, see
- * helio_environment_update(), which is the same to 1e-5 of a texel's brightest channel. */
+ * helio_environment_update(), which is the same to 1e-5 of a texel's brightest channel, and takes memory of the device
+ * for its first sky. */
 HELIO_API helio_status helio_sky_update(helio_sky *sky, const helio_sky_desc *desc, helio_environment *environment,
                                         helio_environment_info *info);
 

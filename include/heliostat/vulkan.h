@@ -28,7 +28,9 @@ typedef struct helio_vulkan_desc {
     VkInstance instance;
     VkPhysicalDevice physical_device;
     VkDevice device;
-    VkQueue queue; /* that computes; used alone by functions named create, while they run */
+    VkQueue queue; /* that computes. While these run on another thread, nobody else may use it: functions named create,
+                      helio_renderer_render(), helio_device_measure_copy(), and, of an environment that a renderer of
+                      this device has, helio_environment_update() and helio_sky_update(). Recording uses no queue */
     uint32_t queue_family;
 } helio_vulkan_desc;
 
@@ -65,7 +67,8 @@ typedef struct helio_vulkan_buffers {
     VkBuffer cube;      /* of the slot: float [6][R][R][3], see environment.h */
     VkBuffer rows;      /* uint32_t [6][R][R + 1], see helio_table_view */
     VkBuffer marginals; /* uint32_t [6][R + 1] */
-    VkBuffer pools; /* float [2][pools][length][4]: direction and density given the pool; radiance / density and 0 */
+    VkBuffer pools;     /* float [2][pools][length][4]: direction and density given the pool; radiance / density and, of
+                           PRODUCT, the number of the tile that the sample is of, else 0 */
 } helio_vulkan_buffers;
 
 HELIO_API helio_vulkan_buffers helio_vulkan_light_buffers(const helio_vulkan_light *light, uint32_t slot);

@@ -32,11 +32,6 @@ typedef struct brdf {
     float alpha2;             /* GGX: alpha^2 */
 } brdf;
 
-static inline uint32_t brdf_lobe_count(helio_material_kind kind)
-{
-    return kind == HELIO_MATERIAL_GGX ? 3 : kind == HELIO_MATERIAL_PHONG ? 2 : 1;
-}
-
 /* Axes to draw directions about: the normal's, and the mirror direction's for PHONG. */
 typedef struct brdf_axes {
     vec3 tangent, bitangent, lobe_tangent, lobe_bitangent;

@@ -15,6 +15,11 @@
 enum { DEFAULT_SAMPLES = 64 };
 static const float DEFAULT_BRDF_SHARE = 0.5f;
 
+float estimate_brdf_share(float given)
+{
+    return given != 0.0f ? given : DEFAULT_BRDF_SHARE;
+}
+
 helio_status estimate_check_share(float share)
 {
     if (!(share > 0.0f && share < 1.0f))
@@ -42,8 +47,7 @@ helio_status estimate_resolve(const helio_pools *pools, const helio_estimate_des
         return fail(HELIO_ERR_ARGUMENT,
                     "%u samples are more than these pools give a point; use at most %u and more passes", desc->samples,
                     limit);
-    if (desc->brdf_share == 0.0f)
-        desc->brdf_share = DEFAULT_BRDF_SHARE;
+    desc->brdf_share = estimate_brdf_share(desc->brdf_share);
     HELIO_TRY(estimate_check_share(desc->brdf_share));
     return HELIO_OK;
 }

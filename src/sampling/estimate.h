@@ -23,6 +23,9 @@ static inline void estimate_radiance(const estimate_result *result, float radian
 /* Fills in defaults and checks ranges: the only place where the defaults of an estimate live. */
 helio_status estimate_resolve(const helio_pools *pools, const helio_estimate_desc *given, helio_estimate_desc *desc);
 
+/* The given share, or the default in place of 0. */
+float estimate_brdf_share(float given);
+
 /* HELIO_ERR_ARGUMENT if the share is not inside of 0..1. */
 helio_status estimate_check_share(float share);
 

@@ -230,11 +230,14 @@ typedef struct sphere_view {
     bool inside, far;
 } sphere_view;
 
-/* From FAR radii away, all rays count as passing by: the mesh is smaller than the roundings of a direction there, and a
- * ray tracer would search all of it for nothing. */
+double scene_far_squared(const helio_scene *scene)
+{
+    const double radii = 1e7;
+    return radii * radii * scene->radius_squared;
+}
+
 static sphere_view view_sphere(const helio_scene *scene, vec3 origin)
 {
-    const double FAR = 1e7;
     sphere_view view = {
         .x = scene->centre[0] - (double)origin.x,
         .y = scene->centre[1] - (double)origin.y,
@@ -243,7 +246,7 @@ static sphere_view view_sphere(const helio_scene *scene, vec3 origin)
     };
     view.squared = view.x * view.x + view.y * view.y + view.z * view.z;
     view.inside = view.squared <= view.radius_squared;
-    view.far = view.squared > FAR * FAR * view.radius_squared;
+    view.far = view.squared > scene_far_squared(scene);
     return view;
 }
 

@@ -40,6 +40,10 @@ enum { SCENE_RAYS = 64 }; /* at most in one call */
 void scene_intersect_many(const helio_scene *scene, vec3 origin, uint32_t count, const float *x, const float *y,
                           const float *z, scene_hit *hits, bool *met);
 
+/* The square of a distance from the mesh's centre from which on all rays count as passing by: the mesh is smaller than
+ * the roundings of a direction there, and a ray tracer would search all of it for nothing. */
+double scene_far_squared(const helio_scene *scene);
+
 /* What shadow rays of a point begin with: where, and what is known without them. */
 typedef struct scene_shadow {
     vec3 origin;

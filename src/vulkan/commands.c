@@ -55,8 +55,7 @@ void commands_destroy(vulkan_commands *commands)
     const helio_device *device = commands->device;
     if (device == NULL)
         return;
-    if (commands->is_pending)
-        device->vk.DeviceWaitIdle(device->device);
+    commands_wait(commands);
     device->vk.DestroyQueryPool(device->device, commands->times, NULL);
     device->vk.DestroyFence(device->device, commands->fence, NULL);
     device->vk.DestroyCommandPool(device->device, commands->pool, NULL);
@@ -215,7 +214,8 @@ double commands_milliseconds(const vulkan_commands *commands, uint32_t from, uin
         return 0.0;
     VkResult result = device->vk.GetQueryPoolResults(device->device, commands->times, 0, commands->mark_count,
                                                      sizeof ticks, ticks, sizeof *ticks, VK_QUERY_RESULT_64_BIT);
-    return result == VK_SUCCESS ? (double)(ticks[to] - ticks[from]) * (double)device->timestamp_period * 1e-6 : 0.0;
+    const uint64_t passed = (ticks[to] - ticks[from]) & (commands->uploads ? device->upload_ticks : device->ticks);
+    return result == VK_SUCCESS ? (double)passed * (double)device->timestamp_period * 1e-6 : 0.0;
 }
 
 void commands_label(vulkan_commands *commands, const char *name)
@@ -248,17 +248,6 @@ helio_status commands_upload(vulkan_commands *commands, const vulkan_buffer *to,
     HELIO_TRY(buffer_create(commands->device, BUFFER_UPLOAD, bytes, 1, "an upload", &staging));
     memcpy(staging.mapped, data, bytes);
     helio_status status = commands_copy_now(commands, &staging, to, bytes);
-    buffer_destroy(commands->device, &staging);
-    return status;
-}
-
-helio_status commands_download(vulkan_commands *commands, const vulkan_buffer *from, void *data, uint64_t bytes)
-{
-    vulkan_buffer staging;
-    HELIO_TRY(buffer_create(commands->device, BUFFER_READBACK, bytes, 1, "a read-back", &staging));
-    helio_status status = commands_copy_now(commands, from, &staging, bytes);
-    if (status == HELIO_OK)
-        memcpy(data, staging.mapped, bytes);
     buffer_destroy(commands->device, &staging);
     return status;
 }

@@ -68,7 +68,4 @@ helio_status commands_copy_now(vulkan_commands *commands, const vulkan_buffer *f
  */
 helio_status commands_upload(vulkan_commands *commands, const vulkan_buffer *to, const void *data, uint64_t bytes);
 
-/* The way back. */
-helio_status commands_download(vulkan_commands *commands, const vulkan_buffer *from, void *data, uint64_t bytes);
-
 #endif

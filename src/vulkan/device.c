@@ -101,6 +101,8 @@ static helio_status choose(helio_device *device, const char *name)
     device->resets_queries = found->resets_queries;
     device->draws = found->draws;
     device->timestamp_period = found->timestamp_period;
+    device->ticks = found->ticks;
+    device->upload_ticks = found->upload_ticks;
     device->info = found->info;
     device->vk.GetPhysicalDeviceMemoryProperties(device->physical, &device->memory);
     return HELIO_OK;
@@ -150,7 +152,6 @@ void helio_device_destroy(helio_device *device)
         return;
     const vulkan_functions *vk = &device->vk;
     if (device->device != VK_NULL_HANDLE) {
-        vk->DeviceWaitIdle(device->device);
         vk->DestroyPipelineLayout(device->device, device->pipeline_layout, NULL);
         if (!device->is_imported)
             vk->DestroyDevice(device->device, NULL);

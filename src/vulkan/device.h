@@ -24,7 +24,8 @@ struct helio_device {
     bool draws;          /* on the queue that computes */
     bool is_imported;    /* instance and device are somebody else's */
     VkPhysicalDeviceMemoryProperties memory;
-    float timestamp_period; /* ns of a tick; 0: it cannot tell the time */
+    float timestamp_period;       /* ns of a tick; 0: it cannot tell the time */
+    uint64_t ticks, upload_ticks; /* the greatest number that the clock of a queue shows, before it begins anew */
     helio_device_info info;
     VkPipelineLayout pipeline_layout; /* of all pipelines: struct layout_push and nothing else */
     atomic_uint_fast64_t complaints;

@@ -107,6 +107,12 @@ primary_way device_choice_primary(void)
     return variable[0] == 'r' ? PRIMARY_BY_RASTER : PRIMARY_BY_FASTER;
 }
 
+/* See ticks in device.h. */
+static uint64_t greatest_tick(uint32_t bits)
+{
+    return bits < 64 ? ((uint64_t)1 << bits) - 1 : UINT64_MAX;
+}
+
 /* A family that computes, and one that copies beside it, if there is any. Of those that compute, if there is one that
  * does not draw as well, as nothing else may be waiting there; or where the rasteriser is wanted, one that does. */
 static void find_queue(const vulkan_functions *vk, device_choice *choice, float period)
@@ -124,6 +130,7 @@ static void find_queue(const vulkan_functions *vk, device_choice *choice, float 
         choice->queue_family = i;
         choice->draws = draws;
         choice->timestamp_period = families[i].timestampValidBits >= 32 ? period : 0.0f;
+        choice->ticks = choice->upload_ticks = greatest_tick(families[i].timestampValidBits);
     }
     choice->info.has_timestamps = choice->timestamp_period > 0.0f;
     choice->upload_family = choice->queue_family;
@@ -134,6 +141,7 @@ static void find_queue(const vulkan_functions *vk, device_choice *choice, float 
             continue;
         choice->upload_family = i;
         choice->uploads_are_timed = choice->info.has_timestamps && families[i].timestampValidBits >= 32;
+        choice->upload_ticks = greatest_tick(families[i].timestampValidBits);
         break;
     }
 }

@@ -27,6 +27,7 @@ typedef struct device_choice {
     bool uploads_are_timed, resets_queries;
     bool draws; /* on the queue that computes */
     float timestamp_period;
+    uint64_t ticks, upload_ticks;
 } device_choice;
 
 /* An instance, with the validation layer and its messenger's extension where validate. */

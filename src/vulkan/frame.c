@@ -12,9 +12,6 @@
 
 #include <string.h>
 
-static const float DEFAULT_BRDF_SHARE = 0.5f;
-static const double FAR = 1e7; /* radii, as in scene.c */
-
 /* ---- the numbers of a step ---------------------------------------------------------------- */
 
 static void put_vectors(const vec3 *vectors, int count, float *to)
@@ -51,7 +48,7 @@ static struct layout_step describe_step(const struct vulkan_renderer *v, const s
         .point_seed = frame->step_seed,
         .same_seed = desc->no_decorrelation,
         .samples = frame->step.samples,
-        .brdf_share = desc->brdf_share != 0.0f ? desc->brdf_share : DEFAULT_BRDF_SHARE,
+        .brdf_share = estimate_brdf_share(desc->brdf_share),
         .no_beta = desc->no_beta,
         .control_part = estimate_control_part(desc->no_control, !desc->no_visibility),
         .normals = v->normals.address,
@@ -64,7 +61,7 @@ static struct layout_step describe_step(const struct vulkan_renderer *v, const s
         .ground_height = desc->scene->ground_height,
         .extent = desc->scene->extent,
         .sphere = {(float)desc->scene->centre[0], (float)desc->scene->centre[1], (float)desc->scene->centre[2],
-                   (float)(FAR * FAR * desc->scene->radius_squared)},
+                   (float)scene_far_squared(desc->scene)},
         .casts_rays = casts_rays(frame->renderer),
         .points_of_group = v->shape.points,
         .width = desc->width,
@@ -345,6 +342,8 @@ static helio_status run_step(struct vulkan_renderer *v, frame_slot *slot, const 
     record_step(v, slot, frame, desc, is_new_pass);
     HELIO_TRY(commands_submit_between(&slot->commands, frame->step.is_first ? light_sent(&v->light) : VK_NULL_HANDLE,
                                       VK_NULL_HANDLE));
+    if (frame->step.is_first)
+        light_heard(&v->light);
     slot->is_pending = true;
     slot->counts_points = frame->step.part == 0;
     slot->info.passes += is_new_pass;
@@ -459,6 +458,8 @@ static helio_status run_steps(helio_renderer *renderer, uint32_t index, struct f
             HELIO_TRY(finish_slot(v, index));
         info->stopped = desc->progress != NULL && !desc->progress(desc->user, (float)(step + 1) / (float)steps);
     }
+    if (!v->slots[index].is_pending) /* which was over before it was known that it would be stopped */
+        v->latest_info = *info;
     return HELIO_OK;
 }
 
@@ -474,7 +475,11 @@ helio_status vulkan_renderer_render(helio_renderer *renderer, const helio_frame_
     HELIO_TRY(finish_slot(v, index));
     v->slots[index].info = (helio_frame_info){0};
     HELIO_TRY(light_send(&v->light, index));
-    HELIO_TRY(run_steps(renderer, index, &frame, desc));
+    const helio_status status = run_steps(renderer, index, &frame, desc);
+    if (status != HELIO_OK) {
+        v->seen.complete = false; /* nobody knows how far it came */
+        return status;
+    }
     v->next = 1 - index;
     HELIO_TRY(take_picture(renderer, &v->slots[index], &frame, desc));
     *info = desc->no_picture ? v->latest_info : v->slots[index].info;

@@ -36,7 +36,7 @@
 
 #define VULKAN_DEVICE_FUNCTIONS(X)                                                                                     \
     X(DestroyDevice)                                                                                                   \
-    X(DeviceWaitIdle)                                                                                                  \
+    X(QueueWaitIdle)                                                                                                   \
     X(GetDeviceQueue)                                                                                                  \
     X(CreateBuffer)                                                                                                    \
     X(DestroyBuffer)                                                                                                   \

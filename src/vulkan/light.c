@@ -24,9 +24,14 @@ helio_status light_create_buffers(vulkan_light *light, const light_buffer *buffe
     return HELIO_OK;
 }
 
+static helio_status create_semaphore(const helio_device *device, VkSemaphore *semaphore)
+{
+    const VkSemaphoreCreateInfo create = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
+    return vulkan_check(device->vk.CreateSemaphore(device->device, &create, NULL, semaphore), "making a semaphore");
+}
+
 static helio_status create_slot(vulkan_light *light, light_slot *slot)
 {
-    const VkSemaphoreCreateInfo semaphore = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
     const light_buffer buffers[] = {
         {&slot->staging, BUFFER_UPLOAD, light_cube_bytes(light), 1, "the map on its way"},
         {&slot->cube, BUFFER_SHARED, light_cube_bytes(light), 1, "the cube"},
@@ -35,8 +40,7 @@ static helio_status create_slot(vulkan_light *light, light_slot *slot)
     };
     HELIO_TRY(light_create_buffers(light, buffers, sizeof buffers / sizeof *buffers));
     HELIO_TRY(commands_create(light->device, true, &slot->upload));
-    return vulkan_check(light->device->vk.CreateSemaphore(light->device->device, &semaphore, NULL, &slot->uploaded),
-                        "making a semaphore");
+    return create_semaphore(light->device, &slot->uploaded);
 }
 
 /* When all is known of the light. */
@@ -90,6 +94,8 @@ void light_destroy(vulkan_light *light)
 {
     if (light->device == NULL)
         return;
+    for (int i = 0; i < LIGHT_SLOTS; i++) /* whose frames may have failed before anything waited for them */
+        commands_wait(&light->slots[i].upload);
     map_destroy(&light->map);
     vulkan_buffer *const all[] = {&light->solid_angles,   &light->rows,
                                   &light->marginals,      &light->row_densities,
@@ -147,10 +153,22 @@ void light_record_cube(vulkan_light *light, vulkan_commands *commands, uint32_t 
     commands_copy(commands, &light->slots[slot].staging, &light->slots[slot].cube, light_cube_bytes(light));
 }
 
+/* A semaphore that is signalled already must not be once more: so it is after a frame that failed behind its upload. */
+static helio_status renew_semaphore(const helio_device *device, light_slot *slot)
+{
+    device->vk.DestroySemaphore(device->device, slot->uploaded, NULL);
+    slot->uploaded = VK_NULL_HANDLE;
+    HELIO_TRY(create_semaphore(device, &slot->uploaded));
+    slot->is_unheard = false;
+    return HELIO_OK;
+}
+
 helio_status light_send(vulkan_light *light, uint32_t slot)
 {
     light_slot *own = &light->slots[slot];
     HELIO_TRY(commands_begin(&own->upload)); /* when the one before has left the staging */
+    if (own->is_unheard)
+        HELIO_TRY(renew_semaphore(light->device, own));
     const bool is_map = map_is_here(&light->map), is_sky = map_is_sky(&light->map);
     if (!is_map && !is_sky)
         stage(light, slot);
@@ -165,7 +183,9 @@ helio_status light_send(vulkan_light *light, uint32_t slot)
     else
         commands_copy(&own->upload, &own->staging, &own->cube, light_cube_bytes(light));
     own->done = commands_mark(&own->upload);
-    return commands_submit_between(&own->upload, VK_NULL_HANDLE, own->uploaded);
+    HELIO_TRY(commands_submit_between(&own->upload, VK_NULL_HANDLE, own->uploaded));
+    own->is_unheard = true;
+    return HELIO_OK;
 }
 
 void light_record_resampling(vulkan_light *light, vulkan_commands *commands)
@@ -189,6 +209,11 @@ const struct layout_sums *light_sums(const vulkan_light *light, uint32_t slot)
 VkSemaphore light_sent(const vulkan_light *light)
 {
     return light->slots[light->slot].uploaded;
+}
+
+void light_heard(vulkan_light *light)
+{
+    light->slots[light->slot].is_unheard = false;
 }
 
 double light_send_milliseconds(const vulkan_light *light, uint32_t slot)

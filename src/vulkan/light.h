@@ -42,6 +42,7 @@ typedef struct light_slot {
     vulkan_commands upload;
     uint32_t started, done; /* marks of the upload */
     VkSemaphore uploaded;
+    bool is_unheard; /* the semaphore is, or will be, signalled, and no list waits for it */
 } light_slot;
 
 typedef struct vulkan_light {
@@ -82,8 +83,9 @@ helio_status light_send(vulkan_light *light, uint32_t slot);
 /* The same, of the cube, as part of a list that makes the tables as well, without a barrier behind. */
 void light_record_cube(vulkan_light *light, vulkan_commands *commands, uint32_t slot);
 
-/* When the cube has come: what the list that makes the tables is to be submitted after. */
+/* When the cube has come: what the list that makes the tables is to be submitted after, and to be told once it was. */
 VkSemaphore light_sent(const vulkan_light *light);
+void light_heard(vulkan_light *light);
 
 /* How long that took, ms, once it is over. */
 double light_send_milliseconds(const vulkan_light *light, uint32_t slot);

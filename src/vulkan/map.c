@@ -221,7 +221,8 @@ static helio_status create_shape(vulkan_map *map)
 static helio_status reshape(vulkan_map *map)
 {
     const helio_device *device = map->device;
-    HELIO_TRY(vulkan_check(device->vk.DeviceWaitIdle(device->device), "waiting for work"));
+    HELIO_TRY(vulkan_check(device->vk.QueueWaitIdle(device->upload_queue), "waiting for uploads"));
+    HELIO_TRY(vulkan_check(device->vk.QueueWaitIdle(device->queue), "waiting for work"));
     release_shape(map);
     return create_shape(map);
 }
