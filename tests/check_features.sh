@@ -16,6 +16,6 @@ for feature in OPENEXR PNG JPEG ASSIMP EMBREE FFMPEG LCMS2 CAIRO VULKAN; do
     cmake -S "$source" -B "$build" -G Ninja -DCMAKE_C_COMPILER="$cc" -DHELIO_WERROR=ON -DBUILD_TESTING=ON \
         "-DHELIO_WITH_$feature=OFF" "-DHELIO_TEST_DATA=${HELIO_TEST_DATA-}"
     cmake --build "$build"
-    ctest --test-dir "$build" --output-on-failure --label-exclude long
+    ctest --test-dir "$build" --parallel "$(nproc)" --output-on-failure --label-exclude long
     rm -rf "$build"
 done

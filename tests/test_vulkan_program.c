@@ -36,7 +36,7 @@ static void lose_after(const char *frames)
 /* The maps, and pictures of all of them in whole/. */
 static void render_whole_sequence(void)
 {
-    skip_without(NEEDS_RENDERER);
+    skip_without(NEEDS_RENDERER | NEEDS_PNG);
     write_maps();
     lose_after(NULL);
     const int code = run_program(SEQUENCE "--out whole/");
