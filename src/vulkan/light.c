@@ -7,6 +7,19 @@
 
 #include <string.h>
 
+_Static_assert((int)LAYOUT_LIGHT_NONE == (int)STRATEGY_LIGHT_NONE &&
+                   (int)LAYOUT_LIGHT_WHOLE == (int)STRATEGY_LIGHT_WHOLE &&
+                   (int)LAYOUT_LIGHT_FACES == (int)STRATEGY_LIGHT_FACES &&
+                   (int)LAYOUT_LIGHT_BINS == (int)STRATEGY_LIGHT_BINS &&
+                   (int)LAYOUT_SURFACE_NONE == (int)STRATEGY_SURFACE_NONE &&
+                   (int)LAYOUT_SURFACE_COSINE == (int)STRATEGY_SURFACE_COSINE &&
+                   (int)LAYOUT_SURFACE_BRDF == (int)STRATEGY_SURFACE_BRDF,
+               "parts of strategies go to shaders as they are");
+_Static_assert((int)LAYOUT_BY_SOLID_ANGLE == (int)HELIO_WEIGHTING_SOLID_ANGLE &&
+                   (int)LAYOUT_BY_PAPER == (int)HELIO_WEIGHTING_PAPER &&
+                   (int)LAYOUT_COMPENSATED == (int)HELIO_WEIGHTING_COMPENSATED,
+               "and so do weightings");
+
 enum { THREADS = 128, THREADS_OF_SOFTWARE = 8, COPY_PIECE = 1 << 20 };
 
 /* ---- creation ----------------------------------------------------------------------------- */

@@ -2,12 +2,22 @@
 #include "vulkan/points.h"
 
 #include "core/error.h"
+#include "sampling/gathering.h"
 
 #include <string.h>
 
 _Static_assert((int)LAYOUT_HIT_OBJECT == (int)HIT_OBJECT && (int)LAYOUT_HIT_PLANE == (int)HIT_PLANE &&
                    (int)LAYOUT_HIT_CATCHER == (int)HIT_CATCHER,
                "what is stored is what shaders know");
+
+_Static_assert((int)LAYOUT_DIFFUSE == (int)HELIO_MATERIAL_DIFFUSE && (int)LAYOUT_PHONG == (int)HELIO_MATERIAL_PHONG &&
+                   (int)LAYOUT_GGX == (int)HELIO_MATERIAL_GGX,
+               "and so are materials");
+_Static_assert((int)LAYOUT_STREAM_ROUNDING == (int)STREAM_ROUNDING &&
+                   (int)LAYOUT_STREAM_SURFACE == (int)STREAM_SURFACE &&
+                   (int)LAYOUT_STREAM_WINDOW == (int)STREAM_WINDOW && (int)LAYOUT_STREAM_BIN == (int)STREAM_BIN &&
+                   (int)LAYOUT_STREAM_LOBE == (int)STREAM_LOBE,
+               "points draw the same numbers");
 
 static helio_status create_pair(helio_device *device, uint64_t count, uint64_t size, const char *name,
                                 vulkan_buffer *on_device, vulkan_buffer *staging)
