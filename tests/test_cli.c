@@ -106,7 +106,8 @@ static void test_version_and_info(void **state)
     succeeds("--version");
     assert_string_equal(program_out, "heliostat " HELIO_VERSION_TEXT "\n");
     succeeds("info");
-    static const char *const words[] = {HELIO_VERSION_TEXT, "logical", "isa", "OpenEXR", "assimp", "Embree", "cpu"};
+    static const char *const words[] = {HELIO_VERSION_TEXT, "logical", "isa",    "OpenEXR",
+                                        "FFmpeg",           "assimp",  "Embree", "cpu"};
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
         assert_non_null(strstr(program_out, words[i]));
 }
