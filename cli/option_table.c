@@ -303,7 +303,7 @@ const cli_option option_table[] = {
      .help =
          "samples drawn ahead in each pool, a power of two; an eighth, for product a fourth, is what a pixel uses at "
          "most before pools are drawn anew",
-     .kind = OPTION_WHOLE,
+     .kind = OPTION_POWER,
      MEMBER(pool_length),
      RENDER(GROUP_SAMPLING)},
     {.name = "bins",

@@ -83,6 +83,9 @@ static int bad_value(const cli_option *option, const char *value)
     case OPTION_WHOLE:
         return message_usage("--%s takes a whole number from %.0f to %.0f, not '%s'", option->name, minimum, maximum,
                              value);
+    case OPTION_POWER:
+        return message_usage("--%s takes a power of two from %.0f to %.0f, not '%s'", option->name, minimum, maximum,
+                             value);
     case OPTION_NUMBER:
         return message_usage("--%s takes a number from %g to %g, not '%s'", option->name, minimum, maximum, value);
     case OPTION_EXPOSURE:
@@ -100,6 +103,15 @@ static int bad_value(const cli_option *option, const char *value)
     case OPTION_FLAG: break;
     }
     return message_usage("--%s takes no value; leave ='%s' away", option->name, value);
+}
+
+static bool parse_power(const char *text, double minimum, double maximum, uint32_t *number)
+{
+    uint32_t parsed;
+    if (!number_parse_whole(text, minimum, maximum, &parsed) || (parsed & (parsed - 1)) != 0)
+        return false;
+    *number = parsed;
+    return true;
 }
 
 static bool parse_size(const char *text, double minimum, double maximum, uint32_t size[2])
@@ -147,6 +159,7 @@ static bool store_value(const cli_option *option, const char *value, cli_options
     case OPTION_TEXT: *(const char **)member = value; return value[0] != 0;
     case OPTION_CHOICE: *(const char **)member = value; return is_choice(option->choices, value);
     case OPTION_WHOLE: return number_parse_whole(value, option->minimum, option->maximum, member);
+    case OPTION_POWER: return parse_power(value, option->minimum, option->maximum, member);
     case OPTION_EXPOSURE:
         if (strcmp(value, "auto") == 0) {
             *(double *)member = (double)NAN;

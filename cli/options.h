@@ -141,6 +141,7 @@ typedef enum option_kind {
     OPTION_TEXT,     /* const char *, not empty */
     OPTION_CHOICE,   /* const char *, one of the choices */
     OPTION_WHOLE,    /* uint32_t in minimum..maximum */
+    OPTION_POWER,    /* likewise, a power of two */
     OPTION_NUMBER,   /* double in minimum..maximum */
     OPTION_EXPOSURE, /* double in minimum..maximum, or the word auto: NaN */
     OPTION_SIZE,     /* uint32_t [2], each in minimum..maximum, as WxH */
