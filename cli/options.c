@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
+/* The name need not end after length. */
 static const cli_option *find_option(unsigned command, const char *name, size_t length)
 {
     for (size_t i = 0; i < option_count; i++) {
@@ -27,17 +28,28 @@ static const cli_option *find_letter(unsigned command, char letter)
     return NULL;
 }
 
+bool option_exists(unsigned command, const char *name)
+{
+    return find_option(command, name, strlen(name)) != NULL;
+}
+
+const char *option_suggest(unsigned command, const char *name)
+{
+    word_suggestion suggestion = {.word = name};
+    for (size_t i = 0; i < option_count; i++)
+        if (option_table[i].commands & command)
+            suggestion_consider(&suggestion, option_table[i].name);
+    return suggestion.best;
+}
+
 static int unknown_option(unsigned command, const char *command_name, const char *argument)
 {
     char name[64];
     const char *start = argument + strspn(argument, "-");
     snprintf(name, sizeof name, "%.*s", (int)strcspn(start, "="), start);
-    word_suggestion suggestion = {.word = name};
-    for (size_t i = 0; i < option_count; i++)
-        if (option_table[i].commands & command)
-            suggestion_consider(&suggestion, option_table[i].name);
-    if (suggestion.best != NULL)
-        return message_usage("%s has no option %s; did you mean --%s?", command_name, argument, suggestion.best);
+    const char *suggestion = option_suggest(command, name);
+    if (suggestion != NULL)
+        return message_usage("%s has no option %s; did you mean --%s?", command_name, argument, suggestion);
     return message_usage("%s has no option %s; heliostat %s --help shows those that it has", command_name, argument,
                          command_name);
 }

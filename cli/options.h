@@ -186,6 +186,11 @@ extern const cli_option option_table[];
 extern const size_t option_count;
 extern const char *const option_group_names[GROUP_COUNT];
 
+/* Has the command an option of this name, which is without dashes? If not, which one is near enough to be meant? NULL:
+ * none. */
+bool option_exists(unsigned command, const char *name);
+const char *option_suggest(unsigned command, const char *name);
+
 /* Writes the choices of an option as words: "auto, cpu or vulkan". */
 void option_choices(const cli_option *option, char *text, size_t size);
 
