@@ -934,7 +934,8 @@ const cli_option option_table[] = {
 
     {.name = "stats",
      .argument = "FILE",
-     .help = "write times, counts and settings as JSON",
+     .bare = "-",
+     .help = "write times, counts and settings as JSON; - or nothing is standard output, in place of the text",
      .kind = OPTION_TEXT,
      MEMBER(stats),
      .group = GROUP_PROGRAM,

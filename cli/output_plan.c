@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "output_plan.h"
 
+#include "json_file.h"
 #include "message.h"
 #include "output_file.h"
 
@@ -231,7 +232,7 @@ int output_plan_check_beside(const render_plan *plan, const char *option, const 
 {
     const char *const inputs[] = {plan->mesh, reference_of(plan), NULL};
     numbered_path names;
-    if (path == NULL)
+    if (path == NULL || json_file_is_printed(path))
         return EXIT_CODE_OK;
     bool is_frame = output_file_is_same(plan->out, path);
     if (plan->sink == SINK_NUMBERED && numbered_path_parse(plan->out, &names))

@@ -706,6 +706,20 @@ static void test_stats_hold_what_is_promised(void **state)
     assert_int_equal(count_files("."), 3); /* mesh, picture, stats */
 }
 
+static void test_stats_are_printed_alone(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_ALL);
+    static const char *const lines[] = {SMALL "--stats -", SMALL "--stats", SMALL "--stats --out heliostat.png"};
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        succeeds(lines[i]);
+        json_t *stats = json_loads(program_out, JSON_REJECT_DUPLICATES, NULL);
+        assert_int_equal(json_array_size(member(stats, "frames")), 1);
+        json_decref(stats);
+        assert_int_equal(count_files("."), 2); /* mesh, picture */
+    }
+}
+
 /* A map of 2 x 1 pixels as PFM: one is NaN, the other has a negative channel. */
 static void write_bad_map(void)
 {
@@ -763,6 +777,7 @@ int main(void)
         program_test(test_all_options_together),
         program_test(test_quiet_is_quiet),
         program_test(test_stats_hold_what_is_promised),
+        program_test(test_stats_are_printed_alone),
         program_test(test_bad_texels_are_counted_and_told),
     };
     return cmocka_run_group_tests(tests, set_up_program, tear_down_program);
