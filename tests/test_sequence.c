@@ -158,12 +158,31 @@ static void test_folder_takes_numbered_pictures(void **state)
     assert_true(same_bytes("there/heliostat_0001.png", "made/heliostat_0001.png"));
 }
 
+static void test_numbered_pictures_have_their_folder_made(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+    write_maps(0, 1);
+    succeeds(SMALL "--env in_%04d.pfm --out new/f_%04d.pfm --stats new/stats.json");
+    assert_int_equal(count_files("new"), 3);
+    succeeds(SMALL "--env in_%04d.pfm --out new/f_%04d.pfm");
+    fails(SMALL "--env in_%04d.pfm --out no/new/f_%04d.pfm", 1, "no/new/f_%04d.pfm");
+    assert_false(exists("no"));
+    write_text("file", "");
+    fails(SMALL "--env in_%04d.pfm --out file/f_%04d.pfm", 1, "file/f_0000.pfm");
+    fails(SMALL "--env in_%04d.pfm --frames 1..7 --out file/f_%04d.pfm", 1, "file/f_0001.pfm");
+}
+
 static void test_folder_that_nothing_comes_into_is_not_left(void **state)
 {
     (void)state;
     skip_without(NEEDS_RENDERER | NEEDS_PNG);
     write_maps(0, 1);
     fails(SMALL "--env in_%04d.pfm --mesh none.obj --out made/", 1, "none.obj");
+    assert_false(exists("made"));
+    fails(SMALL "--env in_%04d.pfm --mesh none.obj --out made/f_%04d.png", 1, "none.obj");
+    assert_false(exists("made"));
+    fails(SMALL "--env in_%04d.pfm --out made/f_%04d.png --stats no/stats.json", 1, "no/stats.json");
     assert_false(exists("made"));
     fails(SMALL "--env in_%04d.pfm --out no/made/", 1, "no/made");
     assert_false(exists("no"));
@@ -297,9 +316,15 @@ static void test_frame_is_not_written_over_a_later_map(void **state)
     write_map("a1.pfm", 1, 1, 1);
     write_map("a11.pfm", 1, 2, 2);
     assert_int_equal(run_program(SMALL "--env a%d.pfm --on-missing skip --out a1%d.pfm"), 1);
-    says("a11.pfm would replace an input");
+    says("would replace an input");
     write_map("again.pfm", 1, 2, 2);
     assert_true(same_bytes("again.pfm", "a11.pfm"));
+    /* The first name is nobody's, but the second one is. */
+    write_map("b1.pfm", 1, 1, 1);
+    write_map("b2.pfm", 1, 2, 2);
+    assert_int_equal(run_program(SMALL "--env b[12].pfm --out b%d.pfm"), 1);
+    says("b1.pfm would replace an input");
+    assert_true(exists("b0.pfm") && same_bytes("again.pfm", "b2.pfm"));
 }
 
 static void test_six_faces_are_inputs_too(void **state)
@@ -1029,6 +1054,7 @@ int main(int count, char **arguments)
         program_test(test_names_may_be_numbered_without_zeros),
         program_test(test_glob_is_numbered_from_0_in_natural_order),
         program_test(test_folder_takes_numbered_pictures),
+        program_test(test_numbered_pictures_have_their_folder_made),
         program_test(test_folder_that_nothing_comes_into_is_not_left),
         program_test(test_sequence_has_a_name_of_its_own),
         program_test(test_one_picture_is_refused_for_many_frames),
