@@ -412,7 +412,7 @@ static void test_missing_frames_stop_by_default_and_keep_the_rest(void **state)
     skip_without(NEEDS_RENDERER);
     write_maps(0, 1);
     write_maps(3, 3);
-    fails(SMALL "--env in_%04d.pfm --out out_%04d.pfm --stats a.json", 1, "in_0002.pfm");
+    fails(SMALL "--env in_%04d.pfm --out out_%04d.pfm --stats a.json -q", 1, "in_0002.pfm");
     says("2 of 4 frames written to out_%04d.pfm");
     assert_true(exists("out_0001.pfm") && !exists("out_0003.pfm"));
     json_t *stats = load_json("a.json");
@@ -696,7 +696,7 @@ static void test_resume_with_another_size_is_refused(void **state)
     skip_without(NEEDS_RENDERER | NEEDS_PNG);
     write_maps(0, 2);
     succeeds(SMALL "--env in_%04d.pfm --out out_%04d.png");
-    fails(SMALL "--env in_%04d.pfm --out out_%04d.png --size 32x24 --resume", 1, "out_0000.png");
+    fails(SMALL "--env in_%04d.pfm --out out_%04d.png --size 32x24 --resume -q", 1, "out_0000.png");
     assert_non_null(strstr(program_err, "--resume"));
 }
 
@@ -707,7 +707,7 @@ static void test_full_disk_ends_a_sequence(void **state)
     skip_without(NEEDS_RENDERER | NEEDS_PNG);
     write_maps(0, 2);
     program_limits.file_size = 1000;
-    fails(SMALL "--env in_%04d.pfm --out out_%04d.pfm", 1, "out_0000.pfm");
+    fails(SMALL "--env in_%04d.pfm --out out_%04d.pfm -q", 1, "out_0000.pfm");
     assert_int_equal(count_files("."), 1 + 3);
     /* A small picture fits, a large one does not. */
     program_limits.file_size = 40000;
@@ -722,7 +722,7 @@ static void test_full_disk_for_a_contact_sheet_leaves_the_frames(void **state)
     skip_without(NEEDS_RENDERER | NEEDS_PNG);
     write_maps(0, 7);
     program_limits.file_size = 600;
-    fails(SMALL "--size 8x6 --env in_%04d.pfm --out out_%04d.pfm --contact-sheet sheet.png", 1,
+    fails(SMALL "--size 8x6 --env in_%04d.pfm --out out_%04d.pfm --contact-sheet sheet.png -q", 1,
           "sheet.png cannot be written: File too large; 8 of 8 frames written to out_%04d.pfm");
     fails(SMALL "--size 128x96 --env in_%04d.pfm --frames 0 --out a.png", 1, "a.png cannot be written: File too large");
     assert_int_equal(count_files("."), 1 + 8 + 8);
@@ -782,7 +782,7 @@ static void test_video_that_ends_early_is_finished(void **state)
     skip_without_video("a.mkv");
     write_maps(0, 2);
     write_maps(4, 4);
-    fails(SMALL "--env in_%04d.pfm --out a.mkv", 1, "in_0003.pfm");
+    fails(SMALL "--env in_%04d.pfm --out a.mkv -q", 1, "in_0003.pfm");
     says("3 of 5 frames written to a.mkv");
     assert_int_equal(check_video("a.mkv", 24, NULL), 3);
 }
@@ -813,7 +813,7 @@ static void test_full_disk_leaves_no_half_video(void **state)
     write_long_sequence();
     write_text("a.mkv", "old");
     program_limits.file_size = 6000;
-    fails(SMALL "--env in_%04d.pfm --codec ffv1 --out a.mkv", 1,
+    fails(SMALL "--env in_%04d.pfm --codec ffv1 --out a.mkv -q", 1,
           "a.mkv cannot be written: File too large; nothing is kept");
     assert_null(strstr(program_err, "written to"));
     char text[8];
@@ -840,7 +840,7 @@ static void test_missing_frames_concern_videos_too(void **state)
     write_maps(0, 2);
     succeeds(FURNACE "--size 64x32 --env in_%04d.pfm --codec ffv1 --out a.mkv");
     assert_int_equal(rename("a.mkv", "a"), 0);
-    succeeds(SMALL "--env a --on-missing skip --out out_%04d.pfm");
+    succeeds(SMALL "--env a --on-missing skip --out out_%04d.pfm -q");
     assert_string_equal(program_err, "");
 }
 
@@ -935,6 +935,20 @@ static void test_quiet_sequence_says_nothing(void **state)
     assert_string_equal(program_err, "");
 }
 
+/* As a log should tell of a run that may be long. */
+static void test_sequence_says_what_it_begins(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+    write_maps(0, 2);
+    succeeds(SMALL "--env in_%04d.pfm --out out_%04d.pfm");
+    assert_string_equal(program_err, "heliostat: 3 frames of 64x48 to out_%04d.pfm\n");
+    succeeds(SMALL "--env in_%04d.pfm --frames 1 --out out_%04d.pfm");
+    assert_string_equal(program_err, "");
+    succeeds(SMALL "--env constant:1,1,1 --out out.pfm");
+    assert_string_equal(program_err, "");
+}
+
 /* What the program writes to stderr where that is a terminal. */
 static void run_on_terminal(const char *const *words, unsigned columns, char *text, size_t size)
 {
@@ -986,7 +1000,7 @@ static void test_progress_shows_frames_on_a_terminal_alone(void **state)
     assert_non_null(strstr(text, " left"));
     assert_null(strchr(text, '\n'));
     succeeds(LONG_RUN "--frames 2..4 --out out_%04d.pfm");
-    assert_string_equal(program_err, "");
+    assert_null(strchr(program_err, '\r'));
 }
 
 /* Length of the longest line that is drawn over others. */
@@ -1101,6 +1115,7 @@ int main(int count, char **arguments)
         program_test(test_day_goes_from_sunrise_to_sunset),
         program_test(test_day_is_what_lights_without_options),
         program_test(test_quiet_sequence_says_nothing),
+        program_test(test_sequence_says_what_it_begins),
         program_test(test_progress_shows_frames_on_a_terminal_alone),
         program_test(test_progress_never_wraps),
         program_test(test_idle_options_of_sequences_are_told),
