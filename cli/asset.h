@@ -6,8 +6,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Looks for an asset in $HELIOSTAT_ASSETS, if that is set, and only there; else where the program was installed, then
- * where it was built. Writes its path, or returns false. */
+/* Looks for an asset in $HELIOSTAT_ASSETS, if that is set, and only there; else where an installed program has its own,
+ * then in the sources that the program was built from, then where it was to be installed. Writes its path, or returns
+ * false. */
 bool asset_find(const char *name, char *path, size_t size);
 
 #endif

@@ -245,5 +245,6 @@ int command_convert(const cli_options *options)
     map_converter_release(&job.converter);
     helio_source_close(job.converter.source);
     helio_context_destroy(job.converter.context);
+    convert_plan_release(&job.plan);
     return code;
 }

@@ -31,6 +31,11 @@ static const feature features[] = {
 #else
     {"JPEG", "read JPEG", false},
 #endif
+#ifdef HELIO_WITH_FFMPEG
+    {"FFmpeg", "read and write video", true},
+#else
+    {"FFmpeg", "read and write video", false},
+#endif
 #ifdef HELIO_WITH_ASSIMP
     {"assimp", "read meshes", true},
 #else

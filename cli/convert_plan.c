@@ -47,7 +47,8 @@ static int check_output(convert_plan *plan)
         return message_usage("--out %s takes one number, such as %%04d or %%d, and no other %%", out);
     if (!is_faces && names_faces(out))
         return message_usage("--out %s names six files or a folder, which only --to faces writes; give one file", out);
-    if (plan->is_numbered && !numbered_path_format(&plan->names, UINT32_MAX, name, sizeof name))
+    if (plan->is_numbered && (!numbered_path_format(&plan->names, UINT32_MAX, name, sizeof name) ||
+                              !numbered_path_format(&plan->names, 0, name, sizeof name)))
         return message_usage("--out %s makes names that are too long", out);
     if (helio_map_check_path(plan->is_numbered ? name : out, is_faces ? HELIO_LAYOUT_FACES : HELIO_LAYOUT_LATLONG) !=
         HELIO_OK)
@@ -134,7 +135,7 @@ static int ask_for_number(const convert_plan *plan, const helio_source_info *sou
                          out, source->label, advice);
 }
 
-int convert_plan_settle(const convert_plan *plan, const helio_source_info *source)
+int convert_plan_settle(convert_plan *plan, const helio_source_info *source)
 {
     const frame_range *frames = &plan->options->frames;
     const char *out = plan->options->convert.out;
@@ -145,12 +146,18 @@ int convert_plan_settle(const convert_plan *plan, const helio_source_info *sourc
     if (plan->to == HELIO_LAYOUT_FACES && is_same_place(out, source->label))
         return message_usage("--out %s would replace the input; give it another folder or name", out);
     /* Files that the source has still to read must not be replaced. */
-    if (plan->is_numbered && numbered_path_format(&plan->names, UINT32_MAX, name, sizeof name) &&
+    if (plan->is_numbered && numbered_path_format(&plan->names, frames->first, name, sizeof name) &&
         (strcmp(out, source->label) == 0 || fnmatch(source->label, name, FNM_PATHNAME) == 0))
         return message_usage("--out %s makes names that %s means too, so inputs might be replaced; give --out another "
                              "folder or name",
                              out, source->label);
-    return EXIT_CODE_OK;
+    return plan->is_numbered ? output_file_make_folder("out", out, &plan->has_made_folder) : EXIT_CODE_OK;
+}
+
+void convert_plan_release(const convert_plan *plan)
+{
+    if (plan->has_made_folder)
+        output_file_remove_folder(plan->options->convert.out);
 }
 
 int convert_plan_shape(const convert_plan *plan, const map_shape *from, map_shape *to)

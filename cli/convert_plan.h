@@ -18,14 +18,19 @@ typedef struct convert_plan {
     numbered_path names;
     bool is_numbered; /* one map for each frame */
     bool is_png;
+    bool has_made_folder; /* of numbered maps; to be removed if nothing comes into it */
 } convert_plan;
 
 /* Checks what the command line tells; touches no file but to see whether --out is a folder. Returns EXIT_CODE_OK, or
  * EXIT_CODE_USAGE after one sentence on stderr. */
 int convert_plan_make(convert_plan *plan, const cli_options *options);
 
-/* The same once the source is known, of which many frames may come. */
-int convert_plan_settle(const convert_plan *plan, const helio_source_info *source);
+/* The same once the source is known, of which many frames may come. Makes the last folder of numbered maps; returns
+ * EXIT_CODE_FAILED as well. */
+int convert_plan_settle(convert_plan *plan, const helio_source_info *source);
+
+/* Removes the folder that was made, if nothing came into it. */
+void convert_plan_release(const convert_plan *plan);
 
 /* The map that is made from one of shape from. Returns an exit code as above. */
 int convert_plan_shape(const convert_plan *plan, const map_shape *from, map_shape *to);

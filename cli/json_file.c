@@ -6,7 +6,6 @@
 
 #include <errno.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -50,9 +49,14 @@ int json_file_write(const char *option, const char *path, const json_t *object)
     return code;
 }
 
+bool json_file_is_printed(const char *path)
+{
+    return path != NULL && strcmp(path, "-") == 0;
+}
+
 int json_file_write_or_print(const char *option, const char *path, const json_t *object)
 {
-    if (strcmp(path, "-") != 0)
+    if (!json_file_is_printed(path))
         return json_file_write(option, path, object);
     if (json_dumpf(object, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) != 0)
         return message_failure("standard output cannot be written");

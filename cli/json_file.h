@@ -4,6 +4,7 @@
 #define HELIOSTAT_CLI_JSON_FILE_H
 
 #include <jansson.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 /* JSON has no word for what is not finite: null. */
@@ -17,7 +18,10 @@ json_t *json_text(const char *text);
  * failure. object may be NULL: there was no memory for it. Returns an exit code. */
 int json_file_write(const char *option, const char *path, const json_t *object);
 
-/* The same, but to standard output where path is "-". */
+/* Does path, which may be NULL, stand for standard output? It does where it is "-". */
+bool json_file_is_printed(const char *path);
+
+/* The same, but to standard output where the path stands for it. */
 int json_file_write_or_print(const char *option, const char *path, const json_t *object);
 
 #endif

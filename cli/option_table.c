@@ -303,7 +303,7 @@ const cli_option option_table[] = {
      .help =
          "samples drawn ahead in each pool, a power of two; an eighth, for product a fourth, is what a pixel uses at "
          "most before pools are drawn anew",
-     .kind = OPTION_WHOLE,
+     .kind = OPTION_POWER,
      MEMBER(pool_length),
      RENDER(GROUP_SAMPLING)},
     {.name = "bins",
@@ -385,7 +385,8 @@ const cli_option option_table[] = {
      .argument = "PATH",
      .shown = "heliostat.png; heliostat_%04d.png for sequences",
      .help = "what to write; the kind follows from its end: a picture (.png, .exr, .pfm), pictures numbered by %04d, a "
-             "folder for numbered .png, or a video (.mp4, .mov, .mkv, .webm)",
+             "folder for numbered .png, or a video (.mp4, .mov, .mkv, .webm); the folder of numbered pictures is made "
+             "if it is missing",
      .kind = OPTION_TEXT,
      MEMBER(out),
      RENDER(GROUP_PICTURE)},
@@ -460,7 +461,8 @@ const cli_option option_table[] = {
      .argument = "PATH",
      .shown = "none; it must be given",
      .help = "map to write; the kind follows from its end: .exr, .hdr, .pfm or .png. With %04d in it, one for each "
-             "frame; six faces need %s in it, or a folder with a slash at its end",
+             "frame, in a folder that is made if it is missing; six faces need %s in it, or a folder with a slash at "
+             "its end",
      .kind = OPTION_TEXT,
      MEMBER(convert.out),
      CONVERT},
@@ -934,7 +936,8 @@ const cli_option option_table[] = {
 
     {.name = "stats",
      .argument = "FILE",
-     .help = "write times, counts and settings as JSON",
+     .bare = "-",
+     .help = "write times, counts and settings as JSON; - or nothing is standard output, in place of the text",
      .kind = OPTION_TEXT,
      MEMBER(stats),
      .group = GROUP_PROGRAM,

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
+/* The name need not end after length. */
 static const cli_option *find_option(unsigned command, const char *name, size_t length)
 {
     for (size_t i = 0; i < option_count; i++) {
@@ -27,17 +28,28 @@ static const cli_option *find_letter(unsigned command, char letter)
     return NULL;
 }
 
+bool option_exists(unsigned command, const char *name)
+{
+    return find_option(command, name, strlen(name)) != NULL;
+}
+
+const char *option_suggest(unsigned command, const char *name)
+{
+    word_suggestion suggestion = {.word = name};
+    for (size_t i = 0; i < option_count; i++)
+        if (option_table[i].commands & command)
+            suggestion_consider(&suggestion, option_table[i].name);
+    return suggestion.best;
+}
+
 static int unknown_option(unsigned command, const char *command_name, const char *argument)
 {
     char name[64];
     const char *start = argument + strspn(argument, "-");
     snprintf(name, sizeof name, "%.*s", (int)strcspn(start, "="), start);
-    word_suggestion suggestion = {.word = name};
-    for (size_t i = 0; i < option_count; i++)
-        if (option_table[i].commands & command)
-            suggestion_consider(&suggestion, option_table[i].name);
-    if (suggestion.best != NULL)
-        return message_usage("%s has no option %s; did you mean --%s?", command_name, argument, suggestion.best);
+    const char *suggestion = option_suggest(command, name);
+    if (suggestion != NULL)
+        return message_usage("%s has no option %s; did you mean --%s?", command_name, argument, suggestion);
     return message_usage("%s has no option %s; heliostat %s --help shows those that it has", command_name, argument,
                          command_name);
 }
@@ -83,6 +95,9 @@ static int bad_value(const cli_option *option, const char *value)
     case OPTION_WHOLE:
         return message_usage("--%s takes a whole number from %.0f to %.0f, not '%s'", option->name, minimum, maximum,
                              value);
+    case OPTION_POWER:
+        return message_usage("--%s takes a power of two from %.0f to %.0f, not '%s'", option->name, minimum, maximum,
+                             value);
     case OPTION_NUMBER:
         return message_usage("--%s takes a number from %g to %g, not '%s'", option->name, minimum, maximum, value);
     case OPTION_EXPOSURE:
@@ -100,6 +115,15 @@ static int bad_value(const cli_option *option, const char *value)
     case OPTION_FLAG: break;
     }
     return message_usage("--%s takes no value; leave ='%s' away", option->name, value);
+}
+
+static bool parse_power(const char *text, double minimum, double maximum, uint32_t *number)
+{
+    uint32_t parsed;
+    if (!number_parse_whole(text, minimum, maximum, &parsed) || (parsed & (parsed - 1)) != 0)
+        return false;
+    *number = parsed;
+    return true;
 }
 
 static bool parse_size(const char *text, double minimum, double maximum, uint32_t size[2])
@@ -147,6 +171,7 @@ static bool store_value(const cli_option *option, const char *value, cli_options
     case OPTION_TEXT: *(const char **)member = value; return value[0] != 0;
     case OPTION_CHOICE: *(const char **)member = value; return is_choice(option->choices, value);
     case OPTION_WHOLE: return number_parse_whole(value, option->minimum, option->maximum, member);
+    case OPTION_POWER: return parse_power(value, option->minimum, option->maximum, member);
     case OPTION_EXPOSURE:
         if (strcmp(value, "auto") == 0) {
             *(double *)member = (double)NAN;

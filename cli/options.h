@@ -141,6 +141,7 @@ typedef enum option_kind {
     OPTION_TEXT,     /* const char *, not empty */
     OPTION_CHOICE,   /* const char *, one of the choices */
     OPTION_WHOLE,    /* uint32_t in minimum..maximum */
+    OPTION_POWER,    /* likewise, a power of two */
     OPTION_NUMBER,   /* double in minimum..maximum */
     OPTION_EXPOSURE, /* double in minimum..maximum, or the word auto: NaN */
     OPTION_SIZE,     /* uint32_t [2], each in minimum..maximum, as WxH */
@@ -184,6 +185,11 @@ typedef struct cli_option {
 extern const cli_option option_table[];
 extern const size_t option_count;
 extern const char *const option_group_names[GROUP_COUNT];
+
+/* Has the command an option of this name, which is without dashes? If not, which one is near enough to be meant? NULL:
+ * none. */
+bool option_exists(unsigned command, const char *name);
+const char *option_suggest(unsigned command, const char *name);
 
 /* Writes the choices of an option as words: "auto, cpu or vulkan". */
 void option_choices(const cli_option *option, char *text, size_t size);

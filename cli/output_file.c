@@ -96,6 +96,31 @@ int output_file_check(const char *option, const char *path, helio_source *source
     return EXIT_CODE_OK;
 }
 
+/* "" where the path has none, or one that is too long. */
+static void last_folder(const char *path, char folder[4096])
+{
+    size_t length = output_file_folder_length(path);
+    snprintf(folder, 4096, "%.*s", length < 4096 ? (int)length : 0, path);
+}
+
+int output_file_make_folder(const char *option, const char *path, bool *is_made)
+{
+    char folder[4096];
+    last_folder(path, folder);
+    *is_made = folder[0] != 0 && mkdir(folder, 0777) == 0;
+    if (folder[0] == 0 || *is_made || errno == EEXIST)
+        return EXIT_CODE_OK;
+    return message_failure("%s cannot be written: the folder %s cannot be made: %s; give --%s another path", path,
+                           folder, strerror(errno), option);
+}
+
+void output_file_remove_folder(const char *path)
+{
+    char folder[4096];
+    last_folder(path, folder);
+    rmdir(folder);
+}
+
 FILE *output_file_open(const char *path, char *temporary, size_t size)
 {
     const char *slash = strrchr(path, '/');

@@ -25,6 +25,13 @@ size_t output_file_folder_length(const char *path);
 /* What follows it; all of the path where nothing does. */
 const char *output_file_last_part(const char *path);
 
+/* Makes the last folder of a path to files that --option names, unless it is there: only the last one, as a path that
+ * is mistyped should not become a tree. *is_made: this made it. Returns an exit code, as above. */
+int output_file_make_folder(const char *option, const char *path, bool *is_made);
+
+/* Removes the last folder of a path, if nothing came into it. */
+void output_file_remove_folder(const char *path);
+
 /* Opens a new file beside path, to be renamed when it is complete; its name stays within temporary. NULL, with errno,
  * if that cannot be. */
 FILE *output_file_open(const char *path, char *temporary, size_t size);

@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #include "output_plan.h"
 
+#include "json_file.h"
 #include "message.h"
 #include "output_file.h"
 
-#include <errno.h>
 #include <fnmatch.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 static const char PICTURE_OUT[] = "heliostat.png", NUMBERED_OUT[] = "heliostat_%04d.png";
 
@@ -212,26 +211,22 @@ static int check_sink(const render_plan *plan, helio_source *source, const char 
         return output_file_check("out", plan->out, source, inputs);
     if (!numbered_path_parse(plan->out, &names) || !numbered_path_format(&names, UINT32_MAX, name, sizeof name))
         return message_usage("--out %s makes names that are too long", plan->out);
+    /* That of a first frame, as far as can be told: people should know the name that they read of. */
+    numbered_path_format(&names, plan->options->frames.first, name, sizeof name);
     return output_file_check("out", name, source, inputs);
 }
 
-/* Only the last folder: a path that is mistyped should not become a tree. */
 static int make_folder(render_plan *plan)
 {
-    const char *folder = plan->options->out;
-    if (folder == NULL || !frame_sink_is_folder(folder))
-        return EXIT_CODE_OK;
-    plan->has_made_folder = mkdir(folder, 0777) == 0;
-    if (plan->has_made_folder || errno == EEXIST)
-        return EXIT_CODE_OK;
-    return message_failure("the folder %s cannot be made: %s; give --out another path", folder, strerror(errno));
+    return plan->sink == SINK_NUMBERED ? output_file_make_folder("out", plan->out, &plan->has_made_folder)
+                                       : EXIT_CODE_OK;
 }
 
 int output_plan_check_beside(const render_plan *plan, const char *option, const char *path, helio_source *source)
 {
     const char *const inputs[] = {plan->mesh, reference_of(plan), NULL};
     numbered_path names;
-    if (path == NULL)
+    if (path == NULL || json_file_is_printed(path))
         return EXIT_CODE_OK;
     bool is_frame = output_file_is_same(plan->out, path);
     if (plan->sink == SINK_NUMBERED && numbered_path_parse(plan->out, &names))
@@ -268,8 +263,8 @@ int output_plan_settle(render_plan *plan, helio_source *source)
     if (code == EXIT_CODE_OK)
         code = check_glob(plan);
     if (code == EXIT_CODE_OK)
-        code = check_reports(plan, source);
-    if (code == EXIT_CODE_OK)
         code = make_folder(plan);
+    if (code == EXIT_CODE_OK)
+        code = check_reports(plan, source);
     return code == EXIT_CODE_OK ? check_sink(plan, source, inputs) : code;
 }

@@ -8,8 +8,8 @@
 /* The first three belong to render_plan_make() and render_plan_settle(). Exit codes as theirs. */
 int output_plan_check(render_plan *plan);
 
-/* Decides what is written where --out was not given, looks at what is there already, and makes the folder that --out
- * names. */
+/* Decides what is written where --out was not given, looks at what is there already, and makes the last folder of
+ * numbered pictures. */
 int output_plan_settle(render_plan *plan, helio_source *source);
 
 /* Tells of options that change nothing. */

@@ -14,6 +14,10 @@
 enum { LINE_SIZE = 192, BAR_WIDTH = 20, LEAST_BAR = 4 };
 static const double REFRESH_MS = 100;
 
+/* Of lines that stay: half a minute, and of long work a tenth of what has passed, so that a night leaves some dozens.
+ */
+static const double LOG_MS = 30e3, LOG_SHARE = 0.1;
+
 void progress_format_time(double milliseconds, char text[16])
 {
     double seconds = fmin(floor(milliseconds / 1e3 + 0.5), 359999);
@@ -46,21 +50,28 @@ static void format_bar(double done, size_t rest, char bar[BAR_WIDTH + 4])
     strcpy(bar + 2 + width, "]");
 }
 
-static void join(const progress_line *line, double done, char text[LINE_SIZE])
+static void draw(const progress_line *line, double done)
 {
     const char *const parts[] = {line->left, line->speed, line->past};
     size_t columns = message_line_width(), length = strlen(line->head), count = 0;
     for (; count < 3 && length + strlen(parts[count]) <= columns; count++)
         length += strlen(parts[count]);
-    char bar[BAR_WIDTH + 4] = "";
+    char bar[BAR_WIDTH + 4] = "", text[LINE_SIZE];
     if (done >= 0)
         format_bar(done, length, bar);
     snprintf(text, LINE_SIZE, "%s%s", line->head, bar);
     for (size_t i = 0; i < count; i++)
         strcat(text, parts[i]);
+    message_draw_line(text);
 }
 
-static void format_picture(const progress_bar *progress, double elapsed, double done, char text[LINE_SIZE])
+/* The first part follows a bar there. */
+static void log_line(const progress_line *line)
+{
+    message_note("%s%s%s%s%s", line->head, line->left[0] != 0 ? "," : "", line->left, line->speed, line->past);
+}
+
+static void show_picture(progress_bar *progress, double elapsed, double done)
 {
     progress_line line = {.speed = ""};
     char past[16], left[16] = "?", rate[32];
@@ -73,11 +84,11 @@ static void format_picture(const progress_bar *progress, double elapsed, double 
     if (progress->pixels > 0)
         snprintf(line.speed, sizeof line.speed, ", %s", rate);
     snprintf(line.past, sizeof line.past, ", %s elapsed", past);
-    join(&line, done, text);
+    progress_show(progress, &line, done);
 }
 
 /* Frames that were there already take no time, so speed is that of the others. */
-static void format_sequence(const progress_bar *progress, double elapsed, double done, char text[LINE_SIZE])
+static void show_sequence(progress_bar *progress, double elapsed, double done)
 {
     progress_line line = {.left = ""};
     char past[16], left[16] = "?";
@@ -88,7 +99,7 @@ static void format_sequence(const progress_bar *progress, double elapsed, double
         snprintf(line.head, sizeof line.head, "frame %" PRIu64, progress->passed + 1);
         snprintf(line.speed, sizeof line.speed, ", %.3g frames/s", fps);
         snprintf(line.past, sizeof line.past, ", %s elapsed", past);
-        join(&line, -1, text);
+        progress_show(progress, &line, -1);
         return;
     }
     if (fps > 0)
@@ -98,24 +109,19 @@ static void format_sequence(const progress_bar *progress, double elapsed, double
     snprintf(line.left, sizeof line.left, " %.3g frames/s", fps);
     snprintf(line.speed, sizeof line.speed, ", %s left", left);
     line.past[0] = 0;
-    join(&line, fmin(passed / total, 1), text);
-}
-
-static void draw(const progress_bar *progress, double elapsed, double done)
-{
-    char line[LINE_SIZE];
-    if (progress->total == 1)
-        format_picture(progress, elapsed, done, line);
-    else
-        format_sequence(progress, elapsed, done, line);
-    message_draw_line(line);
+    progress_show(progress, &line, fmin(passed / total, 1));
 }
 
 void progress_start(progress_bar *progress, uint64_t total, double pixels, bool hidden)
 {
     double now = machine_milliseconds();
-    *progress = (progress_bar){
-        .visible = !hidden && isatty(STDERR_FILENO), .started = now, .drawn = now, .pixels = pixels, .total = total};
+    bool is_terminal = isatty(STDERR_FILENO);
+    *progress = (progress_bar){.visible = !hidden && is_terminal,
+                               .is_logged = !hidden && !is_terminal,
+                               .started = now,
+                               .drawn = now,
+                               .pixels = pixels,
+                               .total = total};
 }
 
 void progress_pass(progress_bar *progress, bool is_rendered)
@@ -126,14 +132,17 @@ void progress_pass(progress_bar *progress, bool is_rendered)
 
 bool progress_is_due(const progress_bar *progress)
 {
-    return progress->visible && machine_milliseconds() - progress->drawn >= REFRESH_MS;
+    double pause = fmax(LOG_MS, LOG_SHARE * (progress->drawn - progress->started));
+    return (progress->visible || progress->is_logged) &&
+           machine_milliseconds() - progress->drawn >= (progress->visible ? REFRESH_MS : pause);
 }
 
 void progress_show(progress_bar *progress, const progress_line *line, double done)
 {
-    char text[LINE_SIZE];
-    join(line, done, text);
-    message_draw_line(text);
+    if (progress->visible)
+        draw(line, done);
+    else if (progress->is_logged)
+        log_line(line);
     progress->drawn = machine_milliseconds();
 }
 
@@ -141,9 +150,11 @@ bool progress_update(void *user, float done)
 {
     progress_bar *progress = user;
     if (progress_is_due(progress)) {
-        double now = machine_milliseconds();
-        draw(progress, now - progress->started, fmin(fmax((double)done, 0), 1));
-        progress->drawn = now;
+        double elapsed = machine_milliseconds() - progress->started, part = fmin(fmax((double)done, 0), 1);
+        if (progress->total == 1)
+            show_picture(progress, elapsed, part);
+        else
+            show_sequence(progress, elapsed, part);
     }
     return interrupt_signal() == 0;
 }
@@ -152,5 +163,5 @@ void progress_end(progress_bar *progress)
 {
     if (progress->visible)
         message_clear_line();
-    progress->visible = false;
+    progress->visible = progress->is_logged = false;
 }

@@ -42,7 +42,7 @@ int reference_report_write(const reference_plan *plan, const render_job *job, js
     json_t *object = json_object();
     json_object_set_new(object, "frames", frames);
     json_object_set_new(object, "summary", summary);
-    int code = json_file_write("stats", options->stats, object);
+    int code = json_file_write_or_print("stats", options->stats, object);
     json_decref(object);
     return code;
 }

@@ -2,6 +2,7 @@
 #include "reference_run.h"
 
 #include "interrupt.h"
+#include "json_file.h"
 #include "machine.h"
 #include "message.h"
 #include "narrow_light.h"
@@ -294,7 +295,7 @@ int reference_run_frame(reference_run *run, uint64_t index, const char *out, flo
     progress_end(&run->job->progress);
     helio_reference_destroy(run->reference);
     run->reference = NULL;
-    if (code == EXIT_CODE_OK && !options->quiet)
+    if (code == EXIT_CODE_OK && !options->quiet && !json_file_is_printed(options->stats))
         tell_success(run);
     return code;
 }

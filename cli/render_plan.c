@@ -4,11 +4,11 @@
 #include "input_source.h"
 #include "mesh_path.h"
 #include "message.h"
+#include "output_file.h"
 #include "output_plan.h"
 
 #include <math.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { USUAL_DAY_FRAMES = 240 };
 
@@ -159,5 +159,5 @@ int render_plan_settle(render_plan *plan, helio_source *source)
 void render_plan_release(const render_plan *plan)
 {
     if (plan->has_made_folder)
-        rmdir(plan->options->out);
+        output_file_remove_folder(plan->out);
 }

@@ -15,7 +15,7 @@ typedef struct render_plan {
     helio_source_desc source;
     char mesh[4096];
     frame_sink_kind sink;
-    bool has_made_folder;     /* that --out names; to be removed if nothing comes into it */
+    bool has_made_folder;     /* of numbered pictures; to be removed if nothing comes into it */
     char out[SINK_PATH_SIZE]; /* "" until render_plan_settle(), where --out was not given */
     bool has_material;        /* else what the mesh brings */
     helio_material material;

@@ -9,6 +9,7 @@
 #include "output_file.h"
 #include "sequence_report.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -80,9 +81,26 @@ static bool light_first(render_sequence *sequence, const helio_source_frame *fra
     return true;
 }
 
+/* On a terminal a bar tells as much. */
+static void tell_start(const render_sequence *sequence)
+{
+    const render_job *job = sequence->job;
+    const uint32_t *size = job->plan.options->size;
+    uint64_t total = job->progress.total;
+    char count[32] = "";
+    if (!job->progress.is_logged || total == 1)
+        return;
+    if (total > 0)
+        snprintf(count, sizeof count, "%" PRIu64 " ", total);
+    message_note("%sframes of %" PRIu32 "x%" PRIu32 " to %s", count, size[0], size[1], job->plan.out);
+}
+
 static bool begin(render_sequence *sequence, const helio_source_frame *frame, stats_frame *stats)
 {
-    return light_first(sequence, frame, stats) && open_sink(sequence) && open_sheet(sequence);
+    if (!light_first(sequence, frame, stats) || !open_sink(sequence) || !open_sheet(sequence))
+        return false;
+    tell_start(sequence);
+    return true;
 }
 
 /* ---- each frame -------------------------------------------------------------------------- */

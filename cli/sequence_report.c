@@ -2,6 +2,7 @@
 #include "sequence_report.h"
 
 #include "interrupt.h"
+#include "json_file.h"
 #include "machine.h"
 #include "message.h"
 
@@ -120,7 +121,8 @@ int sequence_report_write(const render_sequence *sequence)
         int reports = write_reports(sequence);
         code = code == EXIT_CODE_OK ? reports : code;
     }
-    if (code == EXIT_CODE_OK && !sequence->job->plan.options->quiet)
+    const cli_options *options = sequence->job->plan.options;
+    if (code == EXIT_CODE_OK && !options->quiet && !json_file_is_printed(options->stats))
         tell_success(sequence);
     return code;
 }

@@ -103,7 +103,7 @@ int stats_write(const char *path, const stats_list *list, const stats_summary *s
     json_t *object = json_object();
     json_object_set_new(object, "frames", frames);
     json_object_set_new(object, "summary", summary_object(list, summary));
-    int code = json_file_write("stats", path, object);
+    int code = json_file_write_or_print("stats", path, object);
     json_decref(object);
     return code;
 }

@@ -51,8 +51,8 @@ typedef struct stats_list {
 bool stats_list_add(stats_list *list, const stats_frame *frame);
 void stats_list_release(stats_list *list);
 
-/* Writes under a temporary name and renames. fps and samples_per_second are by the sum of total_ms. Returns
- * EXIT_CODE_OK, or EXIT_CODE_FAILED after one sentence on stderr. */
+/* Writes under a temporary name and renames, or prints where path is "-". fps and samples_per_second are by the sum of
+ * total_ms. Returns EXIT_CODE_OK, or EXIT_CODE_FAILED after one sentence on stderr. */
 int stats_write(const char *path, const stats_list *list, const stats_summary *summary);
 
 #endif

@@ -2,7 +2,9 @@
 #include "study_file.h"
 
 #include "message.h"
+#include "options.h"
 
+#include <errno.h>
 #include <jansson.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -46,6 +48,16 @@ static char *make_word(const char *key, const json_t *value, bool *is_bad)
     return NULL;
 }
 
+/* Keys are options, but people who write a file should hear of their file. */
+static int fail_with_key(const char *path, const char *key)
+{
+    const char *suggestion = option_suggest(COMMAND_STUDY, key);
+    if (suggestion != NULL)
+        return message_usage("%s: there is no key \"%s\"; did you mean \"%s\"?", path, key, suggestion);
+    return message_usage("%s: there is no key \"%s\"; keys are the options that heliostat study --help shows", path,
+                         key);
+}
+
 static int add_word(study_file *file, const char *path, const char *key, const json_t *value)
 {
     bool is_bad = false;
@@ -53,6 +65,8 @@ static int add_word(study_file *file, const char *path, const char *key, const j
         return EXIT_CODE_OK;
     if (strcmp(key, "study") == 0)
         return message_usage("%s names another study file; put all options into one", path);
+    if (!option_exists(COMMAND_STUDY, key))
+        return fail_with_key(path, key);
     char *word = make_word(key, value, &is_bad);
     if (word != NULL) {
         file->words[file->owned++] = word;
@@ -65,7 +79,13 @@ static int add_word(study_file *file, const char *path, const char *key, const j
 static json_t *load(const char *path)
 {
     json_error_t error;
-    json_t *object = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
+    FILE *stream = fopen(path, "rb");
+    if (stream == NULL) {
+        message_failure("%s cannot be read: %s", path, strerror(errno));
+        return NULL;
+    }
+    json_t *object = json_loadf(stream, JSON_REJECT_DUPLICATES, &error);
+    fclose(stream);
     if (object == NULL && error.line > 0)
         message_failure("%s is no study file: line %d, %s", path, error.line, error.text);
     else if (object == NULL)

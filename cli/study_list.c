@@ -17,17 +17,33 @@ static bool goes_on(const char *word)
     return length > 0 && end == word + length;
 }
 
-bool study_list_take(const char *text, const char **rest, char *item, size_t size)
+/* Takes length bytes, and what separates them from the rest. */
+static bool take(const char **rest, size_t length, char *item, size_t size)
 {
-    const char *start = *rest, *separator = strchr(text, ';') != NULL ? ";" : ",";
-    size_t length = strcspn(start, separator);
-    bool is_list_of_numbers = strspn(text, "0123456789,") == strlen(text);
-    while (start[length] == ',' && !is_list_of_numbers && goes_on(start + length + 1))
-        length += 1 + strcspn(start + length + 1, separator);
+    const char *start = *rest;
     *rest = start[length] != 0 ? start + length + 1 : NULL;
     if (length == 0 || length >= size)
         return false;
     memcpy(item, start, length);
     item[length] = 0;
     return true;
+}
+
+static const char *separator_of(const char *text)
+{
+    return strchr(text, ';') != NULL ? ";" : ",";
+}
+
+bool study_list_take(const char *text, const char **rest, char *item, size_t size)
+{
+    const char *start = *rest, *separator = separator_of(text);
+    size_t length = strcspn(start, separator);
+    while (start[length] == ',' && goes_on(start + length + 1))
+        length += 1 + strcspn(start + length + 1, separator);
+    return take(rest, length, item, size);
+}
+
+bool study_list_take_plain(const char *text, const char **rest, char *item, size_t size)
+{
+    return take(rest, strcspn(*rest, separator_of(text)), item, size);
 }

@@ -12,4 +12,7 @@
  * empty or too long. */
 bool study_list_take(const char *text, const char **rest, char *item, size_t size);
 
+/* The same for lists whose items hold no commas: each comma ends one. */
+bool study_list_take_plain(const char *text, const char **rest, char *item, size_t size);
+
 #endif

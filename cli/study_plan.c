@@ -152,11 +152,13 @@ static int take_environment(study_plan *plan, const char *item)
 
 /* ---- all lists ----------------------------------------------------------------------------- */
 
-static int take_list(study_plan *plan, const char *option, const char *text, take_item *take)
+typedef bool split_list(const char *text, const char **rest, char *item, size_t size);
+
+static int take_list(study_plan *plan, const char *option, const char *text, split_list *split, take_item *take)
 {
     char item[STUDY_NAME];
     for (const char *rest = text; rest != NULL;) {
-        if (!study_list_take(text, &rest, item, sizeof item))
+        if (!split(text, &rest, item, sizeof item))
             return message_usage("--%s has an item that is empty or longer than %d bytes: '%s'", option, STUDY_NAME - 1,
                                  text);
         int code = take(plan, item);
@@ -170,13 +172,13 @@ static int take_lists(study_plan *plan)
 {
     const study_options *study = &plan->options->study;
     char shipped[STUDY_NAME];
-    int code = take_list(plan, "strategies", study->strategies, take_strategy);
+    int code = take_list(plan, "strategies", study->strategies, study_list_take, take_strategy);
     if (code == EXIT_CODE_OK)
-        code = take_list(plan, "spp", study->spp, take_spp);
+        code = take_list(plan, "spp", study->spp, study_list_take_plain, take_spp);
     if (code == EXIT_CODE_OK)
-        code = take_list(plan, "materials", study->materials, take_material);
+        code = take_list(plan, "materials", study->materials, study_list_take, take_material);
     if (code != EXIT_CODE_OK || study->envs != NULL)
-        return code != EXIT_CODE_OK ? code : take_list(plan, "envs", study->envs, take_environment);
+        return code != EXIT_CODE_OK ? code : take_list(plan, "envs", study->envs, study_list_take, take_environment);
     if (!asset_find(SHIPPED_MAP, shipped, sizeof shipped))
         return message_failure("the map %s that comes with heliostat was not found; give maps by --envs LIST",
                                SHIPPED_MAP);
@@ -202,7 +204,8 @@ static int choose_shown(study_plan *plan)
     plan->is_shown[plan->spp_count / 2] = list == NULL;
     for (uint32_t i = 0; shows_all && i < plan->spp_count; i++)
         plan->is_shown[i] = true;
-    return list == NULL || shows_all ? EXIT_CODE_OK : take_list(plan, "show-spp", list, take_shown);
+    return list == NULL || shows_all ? EXIT_CODE_OK
+                                     : take_list(plan, "show-spp", list, study_list_take_plain, take_shown);
 }
 
 /* ---- the scene ----------------------------------------------------------------------------- */

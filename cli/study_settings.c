@@ -55,7 +55,8 @@ static json_t *value_of(const cli_option *option, const cli_options *options)
     case OPTION_FLAG: return json_boolean(*(const bool *)member);
     case OPTION_TEXT:
     case OPTION_CHOICE: return text_or_null(*(const char *const *)member);
-    case OPTION_WHOLE: return json_whole(*(const uint32_t *)member);
+    case OPTION_WHOLE:
+    case OPTION_POWER: return json_whole(*(const uint32_t *)member);
     case OPTION_NUMBER: return json_number(*(const double *)member);
     case OPTION_EXPOSURE:
         return isnan(*(const double *)member) ? json_string("auto") : json_number(*(const double *)member);

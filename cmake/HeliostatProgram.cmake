@@ -51,11 +51,13 @@ foreach(isa IN LISTS KERNEL_ISAS)
     list(APPEND PEAK_OBJECTS $<TARGET_OBJECTS:bench_fma_${isa}>)
 endforeach()
 
+file(RELATIVE_PATH ASSET_DIR_RELATIVE "${CMAKE_INSTALL_FULL_BINDIR}" "${CMAKE_INSTALL_FULL_DATADIR}/heliostat")
 add_executable(heliostat_program ${PROGRAM_SOURCES} ${PEAK_OBJECTS})
 set_target_properties(heliostat_program PROPERTIES OUTPUT_NAME heliostat
                       RUNTIME_OUTPUT_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}")
 target_compile_definitions(heliostat_program PRIVATE
     ${FEATURE_DEFINITIONS}
+    HELIOSTAT_ASSET_DIR_RELATIVE="${ASSET_DIR_RELATIVE}"
     HELIOSTAT_ASSET_DIR_SOURCE="${CMAKE_CURRENT_SOURCE_DIR}/assets"
     HELIOSTAT_ASSET_DIR_INSTALL="${CMAKE_INSTALL_FULL_DATADIR}/heliostat")
 target_link_libraries(heliostat_program PRIVATE heliostat helio_flags PkgConfig::JANSSON Threads::Threads m)

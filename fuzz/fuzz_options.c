@@ -61,7 +61,8 @@ static void check_option(const cli_option *option, const cli_options *options)
             FUZZ_EXPECT(strstr(choices, text) != NULL);
         }
         return;
-    case OPTION_WHOLE: check_range(option, *(const uint32_t *)member); return;
+    case OPTION_WHOLE:
+    case OPTION_POWER: check_range(option, *(const uint32_t *)member); return;
     case OPTION_EXPOSURE:
         if (isnan(*(const double *)member))
             return;

@@ -60,4 +60,33 @@ run_example "$folder/estimate"
 if [ -x "$prefix/bin/heliostat" ]; then
     echo '-- the installed program'
     "$prefix/bin/heliostat" info
+
+    echo '-- where it has its map'
+    unset HELIOSTAT_ASSETS
+    map=$prefix/share/heliostat/sunrise.hdr
+    [ -f "$map" ] || fail 'the map is missing'
+    echo damaged >"$map"
+    "$prefix/bin/heliostat" bench --stages cube --quick --quiet 2>"$folder/log" && fail 'it takes the map of the sources'
+    grep -q "$(cd "$folder" && pwd -P)/prefix/share/heliostat/sunrise.hdr" "$folder/log" || { cat "$folder/log"; fail 'it takes another map than its own'; }
 fi
+
+# What an earlier installation has left must not come before the sources.
+echo '-- assets of the sources and installed ones'
+mkdir -p "$folder/tree/build" "$folder/tree/assets" "$folder/old"
+touch "$folder/tree/assets/map" "$folder/old/map" "$folder/old/only_old"
+cat >"$folder/find.c" <<'END'
+#include "asset.h"
+#include <stdio.h>
+int main(int count, char **names)
+{
+    char path[4096];
+    for (int i = 1; i < count; i++)
+        puts(asset_find(names[i], path, sizeof path) ? path : "none");
+}
+END
+# shellcheck disable=SC2086 # words on purpose
+"$cc" $flags -D_GNU_SOURCE -I"$source/cli" -DHELIOSTAT_ASSET_DIR_RELATIVE='"../share/heliostat"' \
+    -DHELIOSTAT_ASSET_DIR_SOURCE="\"$folder/tree/assets\"" -DHELIOSTAT_ASSET_DIR_INSTALL="\"$folder/old\"" \
+    "$folder/find.c" "$source/cli/asset.c" -o "$folder/tree/build/find"
+[ "$("$folder/tree/build/find" map only_old neither)" = "$(printf '%s\n' "$folder/tree/assets/map" "$folder/old/only_old" none)" ] \
+    || fail 'assets are looked for in another order'

@@ -106,7 +106,8 @@ static void test_version_and_info(void **state)
     succeeds("--version");
     assert_string_equal(program_out, "heliostat " HELIO_VERSION_TEXT "\n");
     succeeds("info");
-    static const char *const words[] = {HELIO_VERSION_TEXT, "logical", "isa", "OpenEXR", "assimp", "Embree", "cpu"};
+    static const char *const words[] = {HELIO_VERSION_TEXT, "logical", "isa",    "OpenEXR",
+                                        "FFmpeg",           "assimp",  "Embree", "cpu"};
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
         assert_non_null(strstr(program_out, words[i]));
 }
@@ -207,6 +208,10 @@ static const struct {
     {"render --seed 4294967296", "4294967295"},
     {"render --threads 0", "1 to 1024"},
     {"render --env-size 4097", "4096"},
+    {"render --pool-length 1000", "--pool-length takes a power of two from 64 to 65536, not '1000'"},
+    {"render --pool-length 32", "--pool-length"},
+    {"render --pool-length 131072", "--pool-length"},
+    {"render --bins 33", "--bins takes a whole number from 1 to 32, not '33'"},
     {"render --size 640", "1280x720"},
     {"render --size 640x", "640x"},
     {"render --size 640x480x3", "640x480x3"},
@@ -701,6 +706,20 @@ static void test_stats_hold_what_is_promised(void **state)
     assert_int_equal(count_files("."), 3); /* mesh, picture, stats */
 }
 
+static void test_stats_are_printed_alone(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_ALL);
+    static const char *const lines[] = {SMALL "--stats -", SMALL "--stats", SMALL "--stats --out heliostat.png"};
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        succeeds(lines[i]);
+        json_t *stats = json_loads(program_out, JSON_REJECT_DUPLICATES, NULL);
+        assert_int_equal(json_array_size(member(stats, "frames")), 1);
+        json_decref(stats);
+        assert_int_equal(count_files("."), 2); /* mesh, picture */
+    }
+}
+
 /* A map of 2 x 1 pixels as PFM: one is NaN, the other has a negative channel. */
 static void write_bad_map(void)
 {
@@ -758,6 +777,7 @@ int main(void)
         program_test(test_all_options_together),
         program_test(test_quiet_is_quiet),
         program_test(test_stats_hold_what_is_promised),
+        program_test(test_stats_are_printed_alone),
         program_test(test_bad_texels_are_counted_and_told),
     };
     return cmocka_run_group_tests(tests, set_up_program, tear_down_program);

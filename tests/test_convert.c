@@ -636,6 +636,23 @@ static void sequences_are_converted_frame_by_frame(void **state)
     assert_true(first_of("held_1.pfm") == 1);
 }
 
+static void a_sequence_has_its_folder_made(void **state)
+{
+    (void)state;
+    write_frames(3);
+    succeeds("convert in_%02d.pfm --out small/frame_%04d.pfm");
+    assert_int_equal(count_files("small"), 3);
+    succeeds("convert in_%02d.pfm --out small/frame_%04d.pfm");
+    succeeds("convert in_%02d.pfm --to faces --out six/map_%d_%s.pfm");
+    assert_int_equal(count_files("six"), 18);
+    fails("convert in_%02d.pfm --out no/small/frame_%04d.pfm", 1, "no/small/frame_%04d.pfm");
+    assert_false(exists("no"));
+    write_text("in_00.pfm", "damaged");
+    fails("convert in_%02d.pfm --out new/frame_%04d.pfm", 1, "in_00.pfm");
+    assert_false(exists("new"));
+    fails("convert in_%02d.pfm --out new/frame_%04d.tiff", 2, "frame_0000.tiff");
+}
+
 #ifdef HELIO_WITH_FFMPEG
 /* Full range grey: code 128 of 255. */
 static void video_is_converted_by_its_transfer(void **state)
@@ -813,6 +830,7 @@ int main(int count, char **arguments)
         program_test(intensity_is_baked_in),
         program_test(six_files_come_back),
         program_test(sequences_are_converted_frame_by_frame),
+        program_test(a_sequence_has_its_folder_made),
 #ifdef HELIO_WITH_FFMPEG
         program_test(video_is_converted_by_its_transfer),
 #endif

@@ -161,6 +161,18 @@ static void it_stops_at_a_time_or_an_error(void **state)
     fails(SCENE "--camera lookat:eye=0,0,9,at=0,0,20 --error 0.1 --out a.exr", 1, "shows the object");
 }
 
+static void numbers_are_printed_alone(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER | NEEDS_EXR);
+    size_t before = count_files(".");
+    succeeds(SCENE "--spp 128 --out a.exr --stats -");
+    json_t *stats = json_loads(program_out, JSON_REJECT_DUPLICATES, NULL);
+    assert_true(number_of(first_frame(stats), "spp") == 128);
+    json_decref(stats);
+    assert_int_equal(count_files("."), before + 1);
+}
+
 static void light_that_samples_hardly_meet_is_told(void **state)
 {
     (void)state;
@@ -317,6 +329,7 @@ int main(void)
         program_test(threads_change_no_bit),
         program_test(each_frame_has_a_reference_of_its_own),
         program_test(it_stops_at_a_time_or_an_error),
+        program_test(numbers_are_printed_alone),
         program_test(light_that_samples_hardly_meet_is_told),
         program_test(a_killed_and_resumed_reference_equals_an_unbroken_one),
         program_test(an_interrupted_reference_writes_what_it_has),

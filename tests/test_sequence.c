@@ -158,12 +158,31 @@ static void test_folder_takes_numbered_pictures(void **state)
     assert_true(same_bytes("there/heliostat_0001.png", "made/heliostat_0001.png"));
 }
 
+static void test_numbered_pictures_have_their_folder_made(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+    write_maps(0, 1);
+    succeeds(SMALL "--env in_%04d.pfm --out new/f_%04d.pfm --stats new/stats.json");
+    assert_int_equal(count_files("new"), 3);
+    succeeds(SMALL "--env in_%04d.pfm --out new/f_%04d.pfm");
+    fails(SMALL "--env in_%04d.pfm --out no/new/f_%04d.pfm", 1, "no/new/f_%04d.pfm");
+    assert_false(exists("no"));
+    write_text("file", "");
+    fails(SMALL "--env in_%04d.pfm --out file/f_%04d.pfm", 1, "file/f_0000.pfm");
+    fails(SMALL "--env in_%04d.pfm --frames 1..7 --out file/f_%04d.pfm", 1, "file/f_0001.pfm");
+}
+
 static void test_folder_that_nothing_comes_into_is_not_left(void **state)
 {
     (void)state;
     skip_without(NEEDS_RENDERER | NEEDS_PNG);
     write_maps(0, 1);
     fails(SMALL "--env in_%04d.pfm --mesh none.obj --out made/", 1, "none.obj");
+    assert_false(exists("made"));
+    fails(SMALL "--env in_%04d.pfm --mesh none.obj --out made/f_%04d.png", 1, "none.obj");
+    assert_false(exists("made"));
+    fails(SMALL "--env in_%04d.pfm --out made/f_%04d.png --stats no/stats.json", 1, "no/stats.json");
     assert_false(exists("made"));
     fails(SMALL "--env in_%04d.pfm --out no/made/", 1, "no/made");
     assert_false(exists("no"));
@@ -297,9 +316,15 @@ static void test_frame_is_not_written_over_a_later_map(void **state)
     write_map("a1.pfm", 1, 1, 1);
     write_map("a11.pfm", 1, 2, 2);
     assert_int_equal(run_program(SMALL "--env a%d.pfm --on-missing skip --out a1%d.pfm"), 1);
-    says("a11.pfm would replace an input");
+    says("would replace an input");
     write_map("again.pfm", 1, 2, 2);
     assert_true(same_bytes("again.pfm", "a11.pfm"));
+    /* The first name is nobody's, but the second one is. */
+    write_map("b1.pfm", 1, 1, 1);
+    write_map("b2.pfm", 1, 2, 2);
+    assert_int_equal(run_program(SMALL "--env b[12].pfm --out b%d.pfm"), 1);
+    says("b1.pfm would replace an input");
+    assert_true(exists("b0.pfm") && same_bytes("again.pfm", "b2.pfm"));
 }
 
 static void test_six_faces_are_inputs_too(void **state)
@@ -387,7 +412,7 @@ static void test_missing_frames_stop_by_default_and_keep_the_rest(void **state)
     skip_without(NEEDS_RENDERER);
     write_maps(0, 1);
     write_maps(3, 3);
-    fails(SMALL "--env in_%04d.pfm --out out_%04d.pfm --stats a.json", 1, "in_0002.pfm");
+    fails(SMALL "--env in_%04d.pfm --out out_%04d.pfm --stats a.json -q", 1, "in_0002.pfm");
     says("2 of 4 frames written to out_%04d.pfm");
     assert_true(exists("out_0001.pfm") && !exists("out_0003.pfm"));
     json_t *stats = load_json("a.json");
@@ -671,7 +696,7 @@ static void test_resume_with_another_size_is_refused(void **state)
     skip_without(NEEDS_RENDERER | NEEDS_PNG);
     write_maps(0, 2);
     succeeds(SMALL "--env in_%04d.pfm --out out_%04d.png");
-    fails(SMALL "--env in_%04d.pfm --out out_%04d.png --size 32x24 --resume", 1, "out_0000.png");
+    fails(SMALL "--env in_%04d.pfm --out out_%04d.png --size 32x24 --resume -q", 1, "out_0000.png");
     assert_non_null(strstr(program_err, "--resume"));
 }
 
@@ -682,7 +707,7 @@ static void test_full_disk_ends_a_sequence(void **state)
     skip_without(NEEDS_RENDERER | NEEDS_PNG);
     write_maps(0, 2);
     program_limits.file_size = 1000;
-    fails(SMALL "--env in_%04d.pfm --out out_%04d.pfm", 1, "out_0000.pfm");
+    fails(SMALL "--env in_%04d.pfm --out out_%04d.pfm -q", 1, "out_0000.pfm");
     assert_int_equal(count_files("."), 1 + 3);
     /* A small picture fits, a large one does not. */
     program_limits.file_size = 40000;
@@ -697,7 +722,7 @@ static void test_full_disk_for_a_contact_sheet_leaves_the_frames(void **state)
     skip_without(NEEDS_RENDERER | NEEDS_PNG);
     write_maps(0, 7);
     program_limits.file_size = 600;
-    fails(SMALL "--size 8x6 --env in_%04d.pfm --out out_%04d.pfm --contact-sheet sheet.png", 1,
+    fails(SMALL "--size 8x6 --env in_%04d.pfm --out out_%04d.pfm --contact-sheet sheet.png -q", 1,
           "sheet.png cannot be written: File too large; 8 of 8 frames written to out_%04d.pfm");
     fails(SMALL "--size 128x96 --env in_%04d.pfm --frames 0 --out a.png", 1, "a.png cannot be written: File too large");
     assert_int_equal(count_files("."), 1 + 8 + 8);
@@ -757,7 +782,7 @@ static void test_video_that_ends_early_is_finished(void **state)
     skip_without_video("a.mkv");
     write_maps(0, 2);
     write_maps(4, 4);
-    fails(SMALL "--env in_%04d.pfm --out a.mkv", 1, "in_0003.pfm");
+    fails(SMALL "--env in_%04d.pfm --out a.mkv -q", 1, "in_0003.pfm");
     says("3 of 5 frames written to a.mkv");
     assert_int_equal(check_video("a.mkv", 24, NULL), 3);
 }
@@ -788,7 +813,7 @@ static void test_full_disk_leaves_no_half_video(void **state)
     write_long_sequence();
     write_text("a.mkv", "old");
     program_limits.file_size = 6000;
-    fails(SMALL "--env in_%04d.pfm --codec ffv1 --out a.mkv", 1,
+    fails(SMALL "--env in_%04d.pfm --codec ffv1 --out a.mkv -q", 1,
           "a.mkv cannot be written: File too large; nothing is kept");
     assert_null(strstr(program_err, "written to"));
     char text[8];
@@ -815,7 +840,7 @@ static void test_missing_frames_concern_videos_too(void **state)
     write_maps(0, 2);
     succeeds(FURNACE "--size 64x32 --env in_%04d.pfm --codec ffv1 --out a.mkv");
     assert_int_equal(rename("a.mkv", "a"), 0);
-    succeeds(SMALL "--env a --on-missing skip --out out_%04d.pfm");
+    succeeds(SMALL "--env a --on-missing skip --out out_%04d.pfm -q");
     assert_string_equal(program_err, "");
 }
 
@@ -910,6 +935,20 @@ static void test_quiet_sequence_says_nothing(void **state)
     assert_string_equal(program_err, "");
 }
 
+/* As a log should tell of a run that may be long. */
+static void test_sequence_says_what_it_begins(void **state)
+{
+    (void)state;
+    skip_without(NEEDS_RENDERER);
+    write_maps(0, 2);
+    succeeds(SMALL "--env in_%04d.pfm --out out_%04d.pfm");
+    assert_string_equal(program_err, "heliostat: 3 frames of 64x48 to out_%04d.pfm\n");
+    succeeds(SMALL "--env in_%04d.pfm --frames 1 --out out_%04d.pfm");
+    assert_string_equal(program_err, "");
+    succeeds(SMALL "--env constant:1,1,1 --out out.pfm");
+    assert_string_equal(program_err, "");
+}
+
 /* What the program writes to stderr where that is a terminal. */
 static void run_on_terminal(const char *const *words, unsigned columns, char *text, size_t size)
 {
@@ -961,7 +1000,7 @@ static void test_progress_shows_frames_on_a_terminal_alone(void **state)
     assert_non_null(strstr(text, " left"));
     assert_null(strchr(text, '\n'));
     succeeds(LONG_RUN "--frames 2..4 --out out_%04d.pfm");
-    assert_string_equal(program_err, "");
+    assert_null(strchr(program_err, '\r'));
 }
 
 /* Length of the longest line that is drawn over others. */
@@ -1029,6 +1068,7 @@ int main(int count, char **arguments)
         program_test(test_names_may_be_numbered_without_zeros),
         program_test(test_glob_is_numbered_from_0_in_natural_order),
         program_test(test_folder_takes_numbered_pictures),
+        program_test(test_numbered_pictures_have_their_folder_made),
         program_test(test_folder_that_nothing_comes_into_is_not_left),
         program_test(test_sequence_has_a_name_of_its_own),
         program_test(test_one_picture_is_refused_for_many_frames),
@@ -1075,6 +1115,7 @@ int main(int count, char **arguments)
         program_test(test_day_goes_from_sunrise_to_sunset),
         program_test(test_day_is_what_lights_without_options),
         program_test(test_quiet_sequence_says_nothing),
+        program_test(test_sequence_says_what_it_begins),
         program_test(test_progress_shows_frames_on_a_terminal_alone),
         program_test(test_progress_never_wraps),
         program_test(test_idle_options_of_sequences_are_told),

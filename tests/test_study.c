@@ -422,12 +422,16 @@ static void takes_options_from_a_file(void **state)
     write_text("study.txt", "{\"strategies\": {\"face\": 1}}");
     fails("study --study study.txt", 2, "strategies");
     write_text("study.txt", "{\"strategy\": \"face\"}");
-    fails("study --study study.txt", 2, "--strategies");
+    fails("study --study study.txt", 2, "study.txt: there is no key \"strategy\"; did you mean \"strategies\"?");
+    write_text("study.txt", "{\"colour\": 1}");
+    fails("study --study study.txt", 2, "study.txt: there is no key \"colour\";");
+    write_text("study.txt", "{\"spp=4\": true}");
+    fails("study --study study.txt", 2, "study.txt: there is no key \"spp=4\";");
     write_text("study.txt", "{\"spp\": 4,}");
     fails("study --study study.txt", 1, "line 1");
     write_text("study.txt", "[]");
     fails("study --study study.txt", 1, "no object");
-    fails("study --study none.txt", 1, "none.txt");
+    fails("study --study none.txt", 1, "heliostat: none.txt cannot be read: No such file or directory\n");
 }
 
 /* An option behind a colon is the option of the same name, for this strategy alone. */
@@ -594,7 +598,10 @@ static void refuses_what_makes_no_study(void **state)
     fails(SCENE "--strategies face:shiny", 2, "shiny");
     fails(SCENE "--strategies face:brdf-share=2", 2, "brdf-share=2");
     fails(SCENE "--spp 4,4", 2, "twice");
-    fails(SCENE "--spp 4,none", 2, "none");
+    fails(SCENE "--spp 4,none", 2, "not 'none'");
+    fails(SCENE "--spp 4,16,x", 2, "not 'x'");
+    fails(SCENE "--spp 4,x,16", 2, "not 'x'");
+    fails(SCENE "--spp 4,16 --show-spp 4,x,16", 2, "not 'x'");
     fails(SCENE "--spp 4,16 --show-spp 8", 2, "--show-spp");
     fails(SCENE "--materials gold", 2, "materials");
     fails(SCENE "--ground shadow", 2, "--ground");
