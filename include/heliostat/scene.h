@@ -119,6 +119,8 @@ typedef struct helio_mesh_load_desc {
  * looked for, beside the mesh. A texture that cannot be read is a warning in the log, and the material's own colour is
  * used.
  *
+ * A PLY file that ends too early is HELIO_ERR_DATA, with the numbers of faces announced and present.
+ *
  * assimp runs in a child process, made by fork() and gone when this function returns, so that a file that crashes it
  * or never ends becomes a failure. All that comes back is checked. docs/safety.md tells what a host should know. */
 HELIO_API helio_status helio_mesh_load(helio_context *context, const char *path, const helio_mesh_load_desc *desc,
