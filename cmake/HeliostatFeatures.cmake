@@ -45,7 +45,9 @@ if(HELIO_WITH_ASSIMP)
     heliostat_find(ASSIMP libassimp-dev assimp CONFIG QUIET)
     heliostat_find(ASSIMP zlib1g-dev ZLIB QUIET) # for .ply.gz
     list(APPEND SOURCES src/scene/gzip.c src/scene/mesh_arrays.c src/scene/mesh_assimp.c src/scene/mesh_child.c
-         src/scene/mesh_materials.c src/scene/mesh_process.c src/scene/mesh_receipt.c src/scene/mesh_textures.c)
+         src/scene/mesh_materials.c src/scene/mesh_omissions.c src/scene/mesh_process.c src/scene/mesh_receipt.c
+         src/scene/mesh_textures.c
+         src/scene/ply_check.c src/scene/ply_header.c src/scene/ply_stream.c)
     list(APPEND FEATURE_DEFINITIONS HELIO_WITH_ASSIMP=1)
     list(APPEND FEATURE_LIBRARIES assimp::assimp ZLIB::ZLIB)
 endif()

@@ -26,6 +26,7 @@ typedef struct fixture {
     size_t largest;     /* bytes asked for at once since this was set to 0 */
     size_t allowed;     /* allocations that succeed before all fail */
     unsigned warnings;  /* in the log */
+    unsigned notices;   /* in the log, at the level of information */
     char warning[1024]; /* the last one */
 } fixture;
 
@@ -49,6 +50,7 @@ static inline void fixture_release(void *user, void *memory)
 static inline void fixture_log(void *user, helio_log_level level, const char *message)
 {
     fixture *f = user;
+    f->notices += level == HELIO_LOG_INFO;
     if (level > HELIO_LOG_WARNING)
         return;
     f->warnings++;

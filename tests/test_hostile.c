@@ -211,6 +211,25 @@ static void crashes_become_a_sentence(void **state)
     expect_sentence(import_killed, &LIMITS, HELIO_ERR_MEMORY, "killed by the system");
 }
 
+/* The way out is another format than the file's own. */
+static void crashes_have_a_way_out(void **state)
+{
+    (void)state;
+    static const char *const cases[][2] = {
+        {"some.ply", "with another program, to glTF"},        {"some.PLY.gz", "with another program, to glTF"},
+        {"some.glb", "with another program, to PLY"},         {"some.gltf", "with another program, to PLY"},
+        {"some.obj", "with another program, to PLY or glTF"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        mesh_delivery delivery;
+        assert_int_equal(mesh_process_import(context, cases[i][0], import_by_abort, &LIMITS, &delivery),
+                         HELIO_ERR_DATA);
+        const char *way_out = strstr(helio_last_error(), "with another program");
+        assert_non_null(way_out);
+        assert_string_equal(way_out, cases[i][1]);
+    }
+}
+
 /* A crash handler that writes reports must not write one for a file that is damaged. */
 static void handlers_of_the_host_are_not_run(void **state)
 {
@@ -788,6 +807,7 @@ int main(void)
 #ifdef HELIO_WITH_ASSIMP
         TEST(a_good_mesh_comes_back_whole),
         TEST(crashes_become_a_sentence),
+        TEST(crashes_have_a_way_out),
         TEST(handlers_of_the_host_are_not_run),
         TEST(hosts_may_ignore_their_children),
         TEST(time_is_limited),

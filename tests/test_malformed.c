@@ -193,7 +193,12 @@ static void truncated_meshes_do_no_harm(void **state)
         render(EVEN_LIGHT, "short.ply");
     }
     write_bytes("short.ply", bytes, length);
-    render(EVEN_LIGHT, "short.ply");
+    is_refused(EVEN_LIGHT, "short.ply",
+               "short.ply ends too early: its header announces 3 vertices, and there are 0; copy or download it again");
+    write_text("text.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                           "property float z\nelement face 9\nproperty list uchar int vertex_indices\nend_header\n"
+                           "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 2 1 0\n3 0 1");
+    is_refused(EVEN_LIGHT, "text.ply", "text.ply ends too early: its header announces 9 faces, and there are 2");
 }
 
 /* textured.obj: a triangle for each of the pictures that textured.mtl names, up to NULL. */

@@ -227,8 +227,15 @@ static void test_primaries_are_converted(void **state)
     read_pixel(f, HEAD, red, plain);
     read_pixel(f, HEAD "PRIMARIES= 0.64 0.33 0.30 0.60 0.15 0.06 0.3127 0.3290\n", red, rgb);
     assert_memory_equal(rgb, plain, sizeof rgb);
-    read_pixel(f, HEAD "PRIMARIES= 0 0 0 0 0 0 0 0\n", red, rgb);
+
+    /* Photoshop writes zeros for what it does not know; other numbers that span no colours are told of. */
+    f->notices = 0;
+    read_pixel(f, HEAD "PRIMARIES=0 0 0 0 0 0 0 0\n", red, rgb);
     assert_memory_equal(rgb, plain, sizeof rgb);
+    assert_int_equal(f->notices, 0);
+    read_pixel(f, HEAD "PRIMARIES= 0.64 0.33 0.64 0.33 0.64 0.33 0.3127 0.3290\n", red, rgb);
+    assert_memory_equal(rgb, plain, sizeof rgb);
+    assert_int_equal(f->notices, 1);
 
     /* Rec. 2020, with the matrix of BT.2087. */
     const char *wide = HEAD "PRIMARIES= 0.708 0.292 0.170 0.797 0.131 0.046 0.3127 0.3290\n";

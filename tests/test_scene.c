@@ -956,6 +956,102 @@ static void messages_below_the_log_level_do_not_use_up_the_limit(void **state)
     helio_context_destroy(own);
 }
 
+/* What the log says, from information on, while a file of the folder is loaded. */
+static void hear_load(const char *name)
+{
+    helio_context *own;
+    helio_mesh *mesh;
+    heard[0] = 0;
+    assert_ok(helio_context_create(
+        &(helio_context_desc){.threads = 1, .log_level = HELIO_LOG_INFO, .log = keep_message}, &own));
+    assert_ok(helio_mesh_load(own, path_of(name), NULL, &mesh));
+    helio_mesh_destroy(own, mesh);
+    helio_context_destroy(own);
+}
+
+/* One line, for the file: "" for none at all. */
+static void assert_heard(const char *name, const char *words)
+{
+    char line[512];
+    snprintf(line, sizeof line, "%s: %s\n", path_of(name), words);
+    assert_string_equal(heard, words[0] ? line : "");
+}
+
+static void many_degenerate_triangles_are_told(void **state)
+{
+    (void)state;
+    char text[512] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 4\n";
+    for (int i = 0; i < 8; i++)
+        strcat(text, "f 1 2 3\n");
+    write_file("some.obj", text, strlen(text));
+    hear_load("some.obj");
+    assert_heard("some.obj", "1 of 9 triangles have no area and are not seen; the file may be damaged");
+    strcat(text, "f 3 2 1\n");
+    write_file("few.obj", text, strlen(text));
+    hear_load("few.obj");
+    assert_heard("few.obj", "");
+}
+
+#define TEXTURE "{\"index\":0}"
+
+static void omissions_of_gltf_materials_are_told(void **state)
+{
+    (void)state;
+    static const char *const cases[][2] = {
+        {"\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"baseColorFactor\":[1,1,1,0.5]}", ""},
+        {"\"alphaMode\":\"BLEND\",\"pbrMetallicRoughness\":{\"metallicFactor\":0}", ""},
+        {"\"alphaMode\":\"BLEND\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,0.5]}",
+         "not supported and left out: transparency of 1 material (shown opaque)"},
+        {"\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":0}}", ""},
+        {"\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1}},\"normalTexture\":" TEXTURE
+         ",\"occlusionTexture\":" TEXTURE,
+         "not supported and left out: transmission of 1 material (shown opaque), normal maps of 1 material, "
+         "occlusion or light maps of 1 material"},
+        {"\"emissiveFactor\":[0,0,0.1]", "not supported and left out: emission of 1 material"},
+        {"\"emissiveFactor\":[0,0,0]", ""},
+        {"\"extensions\":{\"KHR_materials_clearcoat\":{\"clearcoatFactor\":1},"
+         "\"KHR_materials_sheen\":{\"sheenColorFactor\":[1,0,0]}}",
+         "not supported and left out: clearcoat of 1 material, sheen of 1 material"},
+    };
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        char materials[1024];
+        snprintf(materials, sizeof materials,
+                 "\"extensionsUsed\":[\"KHR_materials_transmission\",\"KHR_materials_clearcoat\","
+                 "\"KHR_materials_sheen\"],\"images\":[{\"uri\":\"none.png\"}],\"textures\":[{\"source\":0}],"
+                 "\"materials\":[{\"name\":\"plastic\",%s}],",
+                 cases[i][0]);
+        helio_mesh_destroy(context, load_gltf("[{\"mesh\":0}]", ",\"material\":0", materials));
+        hear_load("mesh.gltf");
+        assert_heard("mesh.gltf", cases[i][1]);
+    }
+}
+
+static void omissions_of_other_materials_are_told(void **state)
+{
+    (void)state;
+    static const char mtl[] =
+        "newmtl glass\nKd 1 1 1\nd 0.3\nnewmtl leaf\nKd 1 1 1\nmap_d leaf.png\nmap_Bump leaf.png\n"
+        "newmtl lamp\nKe 3 3 3\nmap_Ks lamp.png\nmap_Pr lamp.png\nnewmtl unused\nd 0.5\n";
+    write_file("m.mtl", mtl, strlen(mtl));
+    static const char obj[] = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+                              "usemtl glass\nf 1 2 3\nusemtl leaf\nf 1 2 4\nusemtl lamp\nf 1 3 4\n";
+    write_file("m.obj", obj, strlen(obj));
+    hear_load("m.obj");
+    assert_heard("m.obj", "not supported and left out: transparency of 2 materials (shown opaque), emission of 1 "
+                          "material, bump maps of 1 material, specular maps of 1 material, separate maps of metal or "
+                          "roughness of 1 material");
+    static const char coloured[] = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                                   "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+                                   "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                                   "0 0 0 255 0 0\n1 0 0 0 255 0\n0 1 0 0 0 255\n3 0 1 2\n";
+    write_file("coloured.ply", coloured, strlen(coloured));
+    hear_load("coloured.ply");
+    assert_heard("coloured.ply", "not supported and left out: colours of vertices");
+    write_file("plain.ply", quad_ply, strlen(quad_ply));
+    hear_load("plain.ply");
+    assert_heard("plain.ply", "");
+}
+
 static void known_meshes_are_read(void **state)
 {
     (void)state;
@@ -1682,6 +1778,9 @@ int main(void)
         cmocka_unit_test_setup_teardown(triangles_without_material_get_the_default, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(glb_is_read, make_folder, remove_folder),
         cmocka_unit_test(messages_below_the_log_level_do_not_use_up_the_limit),
+        cmocka_unit_test_setup_teardown(many_degenerate_triangles_are_told, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(omissions_of_gltf_materials_are_told, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(omissions_of_other_materials_are_told, make_folder, remove_folder),
         cmocka_unit_test(known_meshes_are_read),
 #else
         cmocka_unit_test(meshes_cannot_be_loaded_without_assimp),

@@ -117,7 +117,11 @@ typedef struct helio_mesh_load_desc {
  * others, PNG or JPEG, from inside the file or from files named relative to its folder. As in other programs such a
  * name may lead out of the folder by "..". An absolute one is a place on somebody else's disk: only its last part is
  * looked for, beside the mesh. A texture that cannot be read is a warning in the log, and the material's own colour is
- * used.
+ * used. What else materials have, transmission, transparency, emission, normal maps and so on, is left out, and one
+ * line of the log names it (docs/conventions.md).
+ *
+ * A PLY file that ends too early is HELIO_ERR_DATA, with the numbers of faces announced and present. Where more than a
+ * tenth of the triangles of a file are without area, a warning is logged.
  *
  * assimp runs in a child process, made by fork() and gone when this function returns, so that a file that crashes it
  * or never ends becomes a failure. All that comes back is checked. docs/safety.md tells what a host should know. */

@@ -46,6 +46,13 @@ static bool read_numbers(const char *text, int count, double *numbers)
     return true;
 }
 
+static bool are_zero(const double *numbers, int count)
+{
+    while (count > 0 && numbers[count - 1] == 0.0)
+        count--;
+    return count == 0;
+}
+
 static helio_status parse_format(const image_file *file, const char *value, radiance_header *header)
 {
     while (*value == ' ')
@@ -89,7 +96,7 @@ static helio_status parse_line(const image_file *file, const char *line, radianc
     } else if (has_name(line, "PRIMARIES", &value)) {
         if (!read_numbers(value, 8, numbers))
             return fail(HELIO_ERR_DATA, "%s has a bad line \"%.60s\": eight numbers belong there", file->path, line);
-        header->has_primaries = true;
+        header->has_primaries = !are_zero(numbers, 8);
         header->primaries = (chromaticities){
             {numbers[0], numbers[1]}, {numbers[2], numbers[3]}, {numbers[4], numbers[5]}, {numbers[6], numbers[7]}};
     }

@@ -10,7 +10,7 @@
 typedef struct radiance_header {
     bool xyz;                 /* FORMAT=32-bit_rle_xyze */
     double divisor[3];        /* product of all EXPOSURE and COLORCORR lines */
-    bool has_primaries;       /* PRIMARIES was there */
+    bool has_primaries;       /* PRIMARIES was there, and not all zero */
     chromaticities primaries; /* valid if so */
 
     char layout[LAYOUT_COMMENT_SIZE]; /* the comment about it; "" if there is none */

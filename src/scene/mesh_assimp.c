@@ -5,6 +5,7 @@
 #include "image/image.h"
 #include "scene/gzip.h"
 #include "scene/mesh_import.h"
+#include "scene/ply_check.h"
 #include "scene/texture.h"
 
 #include <assimp/cimport.h>
@@ -26,13 +27,16 @@ enum { MAX_DEPTH = 500 };
  */
 static const unsigned POST_PROCESSING = aiProcess_Triangulate;
 
-static const struct aiScene *import_gzip(helio_context *context, const char *path, helio_status *status)
+/* Files that end too early are found before assimp sees them: it makes up what is missing, or crashes. */
+static helio_status check_bytes(const char *path, const unsigned char *bytes, size_t size)
 {
-    unsigned char *bytes;
-    size_t size;
-    *status = gzip_read(context, path, MAX_FILE_BYTES, &bytes, &size);
-    if (*status != HELIO_OK)
-        return NULL;
+    ply_stream stream;
+    ply_stream_open_memory(&stream, bytes, size);
+    return ply_check(&stream, path);
+}
+
+static const struct aiScene *import_bytes(const char *path, const unsigned char *bytes, size_t size)
+{
     /* "ply" of "dragon.ply.gz" tells assimp the format. */
     char inner[16] = "";
     size_t stem = strlen(path) - strlen(".gz");
@@ -41,9 +45,31 @@ static const struct aiScene *import_gzip(helio_context *context, const char *pat
         start--;
     if (start > 0 && path[start - 1] == '.' && stem - start < sizeof inner)
         memcpy(inner, path + start, stem - start);
-    const struct aiScene *scene = aiImportFileFromMemory((const char *)bytes, (unsigned)size, POST_PROCESSING, inner);
+    return aiImportFileFromMemory((const char *)bytes, (unsigned)size, POST_PROCESSING, inner);
+}
+
+static helio_status import_gzip(helio_context *context, const char *path, const struct aiScene **scene)
+{
+    unsigned char *bytes;
+    size_t size;
+    HELIO_TRY(gzip_read(context, path, MAX_FILE_BYTES, &bytes, &size));
+    helio_status status = check_bytes(path, bytes, size);
+    *scene = status == HELIO_OK ? import_bytes(path, bytes, size) : NULL;
     context_release(context, bytes);
-    return scene;
+    return status;
+}
+
+static helio_status import_file(const char *path, const struct aiScene **scene)
+{
+    ply_stream stream;
+    FILE *file;
+    uint64_t size;
+    HELIO_TRY(file_open(path, &file, &size));
+    ply_stream_open_file(&stream, file, size);
+    helio_status status = ply_check(&stream, path);
+    fclose(file);
+    *scene = status == HELIO_OK ? aiImportFile(path, POST_PROCESSING) : NULL;
+    return status;
 }
 
 /* assimp's own sentence about a file that does not exist names no reason, and it would wait for a named pipe. */
@@ -74,12 +100,11 @@ static helio_status fail_with_assimp(const char *path)
 static helio_status open_scene(helio_context *context, const char *path, const struct aiScene **scene)
 {
     HELIO_TRY(check_file(path));
-    helio_status status = HELIO_OK;
     if (file_has_extension(path, "gz"))
-        *scene = import_gzip(context, path, &status);
+        HELIO_TRY(import_gzip(context, path, scene));
     else
-        *scene = aiImportFile(path, POST_PROCESSING);
-    return *scene == NULL && status == HELIO_OK ? fail_with_assimp(path) : status;
+        HELIO_TRY(import_file(path, scene));
+    return *scene == NULL ? fail_with_assimp(path) : HELIO_OK;
 }
 
 /* ---- flattening ------------------------------------------------------------------------ */

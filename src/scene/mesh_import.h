@@ -39,7 +39,11 @@ helio_status texture_list_add(texture_list *list, const struct aiMaterial *from,
                               uint32_t *coordinate_set);
 void texture_list_destroy(texture_list *list);
 
-/* Has the material a texture for its colour? */
+/* Has the material a texture for its colour? Or such of metal or roughness as are not used? */
 bool has_colour_texture(const struct aiMaterial *from);
+bool has_split_metallic_roughness(const struct aiMaterial *from);
+
+/* Logs one line that names what the materials in use have and ours do not, if there is anything. */
+void log_omissions(const mesh_file *file, const material_use *uses);
 
 #endif

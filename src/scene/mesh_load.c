@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "core/context.h"
 #include "core/error.h"
 #include "scene/mesh_process.h"
 
@@ -12,6 +13,9 @@
 enum { MEMORY_PER_BYTE = 16, LEAST_SECONDS = 8, TEXTURE_FACTOR = 2, CLOCK_FACTOR = 16 };
 
 #define DEFAULT_TEXTURE_PIXELS (UINT64_C(1) << 26)
+
+/* One triangle in so many may be without area before it is told. */
+enum { MANY_DEGENERATE = 10 };
 
 /* The only place where the defaults of helio_mesh_load_desc live. */
 static mesh_limits resolve_desc(const helio_mesh_load_desc *desc, const char *path)
@@ -30,10 +34,22 @@ static mesh_limits resolve_desc(const helio_mesh_load_desc *desc, const char *pa
     };
 }
 
+/* Scans have a few of them. Where there are many, the file is damaged, or is not what the importer takes it for. */
+static void tell_degenerate(helio_context *context, const char *path, const helio_mesh *mesh)
+{
+    if (mesh->degenerate_triangles > mesh->triangle_count / MANY_DEGENERATE)
+        context_log(context, HELIO_LOG_WARNING,
+                    "%s: %u of %u triangles have no area and are not seen; the file may be damaged", path,
+                    mesh->degenerate_triangles, mesh->triangle_count);
+}
+
 static helio_status create_mesh(helio_context *context, const char *path, const helio_mesh_desc *desc, helio_mesh **out)
 {
     helio_status status = helio_mesh_create(context, desc, out);
-    return status == HELIO_OK ? HELIO_OK : fail(status, "%s: %s", path, helio_last_error());
+    if (status != HELIO_OK)
+        return fail(status, "%s: %s", path, helio_last_error());
+    tell_degenerate(context, path, *out);
+    return HELIO_OK;
 }
 
 static helio_status load_here(helio_context *context, const char *path, const mesh_limits *limits, helio_mesh **out)

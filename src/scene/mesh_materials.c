@@ -135,5 +135,7 @@ helio_status import_materials(const mesh_file *file, material_use *uses)
         file->options->on_textures(file->options->user);
     helio_status status = fill_materials(file, textures, uses);
     texture_list_destroy(textures);
+    if (status == HELIO_OK)
+        log_omissions(file, uses);
     return status;
 }

@@ -4,6 +4,7 @@
 #include "core/clock.h"
 #include "core/context.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "core/fork_gate.h"
 #include "scene/mesh_child.h"
 
@@ -250,7 +251,16 @@ static void reap(mesh_process *process)
 
 /* ---- outcome ---------------------------------------------------------------------------- */
 
-static const char WAY_OUT[] = "if it is sound, convert it with another program, to PLY or glTF";
+/* To another format than its own. */
+static const char *way_out(const char *path)
+{
+    if (file_has_extension(path, "ply") || file_has_extension(path, "ply.gz"))
+        return "if it is sound, convert it with another program, to glTF";
+    if (file_has_extension(path, "gltf") || file_has_extension(path, "glb"))
+        return "if it is sound, convert it with another program, to PLY";
+    return "if it is sound, convert it with another program, to PLY or glTF";
+}
+
 static const char MORE_TIME[] = "if you trust it, raise max_seconds (--max-mesh-seconds)";
 
 static helio_status fail_of_memory(const mesh_process *process)
@@ -273,10 +283,10 @@ static helio_status fail_of_death(const mesh_process *process)
                     limits->clock_seconds, MORE_TIME);
     if (process->exit == -1)
         return fail(HELIO_ERR_DATA, "%s cannot be read as a mesh: its import ended for an unknown reason; %s", path,
-                    WAY_OUT);
+                    way_out(path));
     if (!WIFSIGNALED(process->exit))
         return fail(HELIO_ERR_DATA, "%s cannot be read as a mesh: its import ended with exit code %d; %s", path,
-                    WEXITSTATUS(process->exit), WAY_OUT);
+                    WEXITSTATUS(process->exit), way_out(path));
     int number = WTERMSIG(process->exit);
     if (number == SIGXCPU)
         return fail(HELIO_ERR_DATA,
@@ -289,7 +299,7 @@ static helio_status fail_of_death(const mesh_process *process)
     if (number == SIGINT || number == SIGTERM || number == SIGHUP)
         return fail(HELIO_ERR_IO, "%s was not read: its import was stopped (%s)", path, strsignal(number));
     return fail(HELIO_ERR_DATA, "%s cannot be read as a mesh: it crashes the importer (%s); %s", path,
-                strsignal(number), WAY_OUT);
+                strsignal(number), way_out(path));
 }
 
 static helio_status judge(const mesh_process *process)

@@ -190,6 +190,14 @@ static bool find_metallic_roughness(const struct aiMaterial *from, texture_sourc
            strcmp(metallic->name.data, roughness.name.data) == 0;
 }
 
+bool has_split_metallic_roughness(const struct aiMaterial *from)
+{
+    texture_source source;
+    return (aiGetMaterialTextureCount(from, aiTextureType_METALNESS) != 0 ||
+            aiGetMaterialTextureCount(from, aiTextureType_DIFFUSE_ROUGHNESS) != 0) &&
+           !find_metallic_roughness(from, &source);
+}
+
 /* Which number a source has, which is read if it is new. */
 static helio_status number_source(texture_list *list, const texture_source *wanted, uint32_t *number)
 {
