@@ -44,7 +44,7 @@ static void judge_face(void *data, size_t face)
 {
     evenness_work *work = data;
     const tiles *t = work->tiles;
-    const double angle = 4.0 * PI / CUBE_FACES, mean = work->tables->flux[face] / angle;
+    const double angle = 4.0 * PI / CUBE_FACES, mean = tables_flux(t->size, work->tables->face_fluxes[face]) / angle;
     const double most = GREATEST_VARIANCE * mean * mean * angle;
     tile_moments above[TILES_PER_EDGE] = {{0}};
     double sum = 0.0;
