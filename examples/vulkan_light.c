@@ -65,7 +65,7 @@ static bool make_device(engine *e)
                                                    .bufferDeviceAddress = VK_TRUE};
     const VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
                                                 .pNext = &features12,
-                                                .features = {.shaderInt64 = VK_TRUE, .shaderFloat64 = VK_TRUE}};
+                                                .features = {.shaderInt64 = VK_TRUE}};
     const VkDeviceCreateInfo device = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                        .pNext = &features,
                                        .queueCreateInfoCount = 1,

@@ -5,29 +5,35 @@
 // src/sampling/tiles_kernel.c, to the bit.
 #include "common.glsl"
 #include "fixed_point.glsl"
+#include "division.glsl"
 #include "scan.glsl"
 
-// Divisions of floats, which devices round as they like, are made in double and so come out right.
-float divide(float a, float b)
+struct normal_bin {
+    vec3 centre;
+    float reach, edge, bend;
+};
+
+normal_bin bin_at(uint bin)
 {
-    return float(double(a) / double(b));
+    const vec4 numbers = vector_at(STATE.bins, bin);
+    precise float edge = 0.6 * numbers.w;
+    return normal_bin(numbers.xyz, numbers.w, edge, divide(1.0, 4.0 * edge));
 }
 
 // See normal_bin_cosine().
-float bin_cosine(float reach, float cosine)
+float bin_cosine(normal_bin bin, float cosine)
 {
-    precise float edge = 0.6 * reach;
-    precise float within = max(cosine + reach, 0.0), risen = max(cosine + edge, 0.0);
-    precise float square = risen * risen, bent = divide(square, 4.0 * edge);
-    precise float result = (cosine < edge ? bent : cosine) + 0.01 * within;
+    precise float within = max(cosine + bin.reach, 0.0), risen = max(cosine + bin.edge, 0.0);
+    precise float bent = risen * risen * bin.bend;
+    precise float result = (cosine < bin.edge ? bent : cosine) + 0.01 * within;
     return result;
 }
 
-float weigh(vec3 centre, float reach, uint position)
+float weigh(normal_bin bin, uint position)
 {
     vec4 tile = vector_at(STATE.tiles, position);
-    precise float cosine = centre.x * tile.x + centre.y * tile.y + centre.z * tile.z;
-    precise float weight = tile.w * bin_cosine(reach, cosine);
+    precise float cosine = bin.centre.x * tile.x + bin.centre.y * tile.y + bin.centre.z * tile.z;
+    precise float weight = tile.w * bin_cosine(bin, cosine);
     return weight;
 }
 
@@ -35,22 +41,20 @@ void main()
 {
     begin_with_state();
     const uint bin = gl_WorkGroupID.x, count = STATE.tile_count, to = bin * (count + 1u);
-    const vec4 numbers = vector_at(STATE.bins, bin);
-    const vec3 centre = numbers.xyz;
-    const float reach = numbers.w;
+    const normal_bin own = bin_at(bin);
     uint largest = 0u, sum = 0u;
     for (uint i = gl_LocalInvocationID.x; i < count; i += gl_WorkGroupSize.x)
-        largest = max(largest, floatBitsToUint(weigh(centre, reach, i)));
+        largest = max(largest, floatBitsToUint(weigh(own, i)));
     const int exponent = fixed_point_exponent(greatest_in_group(largest), summand_bits(count));
     const float factor = power_of_two(exponent);
     const uint each = (count + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x;
     const uint begin = min(each * gl_LocalInvocationID.x, count), end = min(begin + each, count);
     for (uint i = begin; i < end; i++)
-        sum += fixed_point_integer(weigh(centre, reach, i), factor);
+        sum += fixed_point_integer(weigh(own, i), factor);
     uint total, before = sum_before_in_group(sum, total);
     for (uint i = begin; i < end; i++) {
         STATE.bin_sums.at[to + i] = before;
-        before += fixed_point_integer(weigh(centre, reach, i), factor);
+        before += fixed_point_integer(weigh(own, i), factor);
     }
     if (gl_LocalInvocationID.x != 0u)
         return;

@@ -1,36 +1,41 @@
 #version 460
 // SPDX-License-Identifier: MIT
 //
-// Whether the light of a face is even: a face for each work group. As judge_face() in src/sampling/evenness.c.
+// Whether the light of a face is even: a face for each work group. As judge_face() in src/sampling/evenness.c, but for
+// rounding.
 #include "common.glsl"
+#include "fixed_point.glsl"
+#include "face_sums.glsl"
+#include "division.glsl"
+#include "face_light.glsl"
 
-const double GREATEST_VARIANCE = 0.016LF, ANGLE = 2.0943951023931953LF; // of a face, sr
+const float GREATEST_VARIANCE = 0.016, ANGLE = 2.0943951; // of a face, sr
 
-shared double parts[gl_WorkGroupSize.x];
+shared float parts[gl_WorkGroupSize.x];
 
-double moment(uint tile, uint which)
+float moment(uint tile, uint which)
 {
     return STATE.moments.at[3u * tile + which];
 }
 
 // Half the square of the difference between two tiles' means is what a border between them adds.
-double step_between(uint a, uint b)
+float step_between(uint a, uint b)
 {
-    const double difference = moment(a, 1u) / moment(a, 0u) - moment(b, 1u) / moment(b, 0u);
-    return 0.25LF * difference * difference * (moment(a, 0u) + moment(b, 0u)) * 0.5LF;
+    const float difference = moment(a, 1u) / moment(a, 0u) - moment(b, 1u) / moment(b, 0u);
+    return 0.25 * difference * difference * (moment(a, 0u) + moment(b, 0u)) * 0.5;
 }
 
-double variance_of(uint tile)
+float variance_of(uint tile)
 {
-    const double variance = moment(tile, 2u) - moment(tile, 1u) * moment(tile, 1u) / moment(tile, 0u);
-    return variance > 0.0LF ? variance : 0.0LF; // a constant's may round to less
+    const float variance = moment(tile, 2u) - moment(tile, 1u) * moment(tile, 1u) / moment(tile, 0u);
+    return max(variance, 0.0); // a constant's may round to less
 }
 
 void main()
 {
     begin_with_state();
     const uint face = gl_WorkGroupID.x, thread = gl_LocalInvocationID.x, edge = STATE.tiles_per_edge;
-    double sum = 0.0LF;
+    float sum = 0.0;
     for (uint i = thread; i < edge * edge; i += gl_WorkGroupSize.x) {
         const uint tile = face * edge * edge + i;
         sum += variance_of(tile);
@@ -45,7 +50,7 @@ void main()
         return;
     for (uint i = 1u; i < gl_WorkGroupSize.x; i++)
         sum += parts[i];
-    const double mean = STATE.sums.all.flux[face] / ANGLE, most = GREATEST_VARIANCE * mean * mean * ANGLE;
-    if (!(sum <= most + 1e-12LF * mean * mean))
+    const float mean = light_of_face(face).mean;
+    if (!(sum <= GREATEST_VARIANCE * mean * mean * ANGLE))
         atomicAdd(STATE.sums.all.uneven_faces, 1u);
 }

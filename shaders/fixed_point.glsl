@@ -14,6 +14,14 @@ float power_of_two(int exponent)
     return uintBitsToFloat(uint(exponent + 127) << 23);
 }
 
+// x 2^exponent. In two steps, of which only the last may leave the range of normal floats.
+float scaled(float x, int exponent)
+{
+    const int first = exponent >> 1;
+    precise float result = x * power_of_two(first) * power_of_two(exponent - first);
+    return result;
+}
+
 // The exponent e for which the largest weight x 2^e is below 2^bits, and nearly reaches it; weights are 0 or normal.
 int fixed_point_exponent(uint largest_bits, int bits)
 {
@@ -53,4 +61,12 @@ uint rescale(layout_row_sum row, int to)
         return 1u;
     uint64_t rounded = (uint64_t(row.sum) + (uint64_t(1) << (shift - 1))) >> shift;
     return max(uint(rounded), 1u);
+}
+
+// sum x 2^-exponent x factor x 2^to. Of the sum 24 bits, so that it need not be rounded.
+float scale_sum(layout_row_sum row, float factor, int to)
+{
+    const int cut = max(findMSB(row.sum) - 23, 0);
+    precise float result = float(row.sum >> cut) * factor;
+    return scaled(result, cut - row.exponent + to);
 }

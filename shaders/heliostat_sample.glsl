@@ -28,6 +28,7 @@ const bool IS_SOFTWARE = false;
 #include "cube.glsl"
 #include "elementary.glsl"
 #include "fixed_point.glsl"
+#include "division.glsl"
 #include "tables.glsl"
 #include "tiles.glsl"
 #include "brdf.glsl"

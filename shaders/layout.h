@@ -11,7 +11,6 @@
 #define UINT uint
 #define INT int
 #define FLOAT float
-#define DOUBLE double
 #define STRUCT
 #else
 #include <stdint.h>
@@ -19,7 +18,6 @@
 #define UINT uint32_t
 #define INT int32_t
 #define FLOAT float
-#define DOUBLE double
 #define STRUCT struct
 #endif
 
@@ -107,10 +105,10 @@ struct layout_row_sum {
 
 /* What is known of the map as a whole. */
 struct layout_sums {
-    DOUBLE flux[LAYOUT_FACES];
-    DOUBLE worth[LAYOUT_FACES]; /* the flux, or of compensated weights that of what is above the level */
+    STRUCT layout_row_sum flux[LAYOUT_FACES];    /* see tables_flux() */
     STRUCT layout_row_sum weights[LAYOUT_FACES]; /* of the faces */
-    UINT faces[LAYOUT_FACES + 1];                /* prefix sums of these */
+    FLOAT worth[LAYOUT_FACES];                   /* as in tables.h */
+    UINT faces[LAYOUT_FACES + 1];                /* prefix sums of the weights */
     UINT uneven_faces;                           /* where it pays to aim at light, see evenness.h */
 };
 
@@ -191,10 +189,6 @@ struct layout_sun_texel {
 layout(buffer_reference, std430, buffer_reference_align = 4) buffer floats
 {
     float at[];
-};
-layout(buffer_reference, std430, buffer_reference_align = 8) buffer doubles
-{
-    double at[];
 };
 layout(buffer_reference, std430, buffer_reference_align = 4) buffer uints
 {
@@ -282,7 +276,7 @@ struct layout_state {
     ADDRESS(floats, greatest);     /* [tiles] */
     ADDRESS(uints, list_starts);   /* [tiles + 1] */
     ADDRESS(vectors, listed);      /* [list_capacity][2]: as in pools, given the tile */
-    ADDRESS(doubles, moments);     /* [6][T][T][3]: see tile_moments in evenness.c */
+    ADDRESS(floats, moments);      /* [6][T][T][3]: see moments.comp */
     ADDRESS(vectors, tile_light);   /* [tiles][LAYOUT_CONTROL_ROWS] */
     ADDRESS(vectors, tile_hues);    /* [tiles + 1]: hue and brightness; at the end brightness per light */
     ADDRESS(vectors, known);        /* [bins][LAYOUT_CONTROL_ROWS] */
@@ -366,7 +360,7 @@ struct layout_push {
 };
 
 #ifndef VULKAN
-_Static_assert(sizeof(struct layout_sums) == 176, "as in the shaders");
+_Static_assert(sizeof(struct layout_sums) == 152, "as in the shaders");
 _Static_assert(sizeof(struct layout_material) == 48 && sizeof(struct layout_point) == 48, "as in the shaders");
 _Static_assert(sizeof(struct layout_state) == 30 * 8 + 18 * 4, "as in the shaders");
 _Static_assert(sizeof(struct layout_step) == 16 * 8 + 58 * 4, "as in the shaders");

@@ -55,23 +55,12 @@ void find_row_densities(uint first, uint total, int exponent)
     }
 }
 
-// 2^exponent in double.
-double double_power(int exponent)
-{
-    return packDouble2x32(uvec2(0u, uint(clamp(exponent, -1022, 1023) + 1023) << 20));
-}
-
-double flux_of(layout_row_sum sum)
-{
-    return double(sum.sum) * double_power(-sum.exponent) * 4.0LF / (double(STATE.size) * double(STATE.size));
-}
-
 void find_flux(uint face)
 {
     const int exponent = exponent_of_rows(true, face * STATE.size);
     const layout_row_sum flux = layout_row_sum(sum_rows(true, face * STATE.size, 0u, exponent), exponent);
     if (gl_LocalInvocationID.x == 0u)
-        STATE.sums.all.flux[face] = flux_of(flux);
+        STATE.sums.all.flux[face] = flux;
 }
 
 void main()
@@ -90,7 +79,5 @@ void main()
     STATE.marginals.at[marginal + STATE.size] = weight.sum;
     STATE.sums.all.weights[face] = weight;
     if (STATE.weighting == LAYOUT_BY_SOLID_ANGLE)
-        STATE.sums.all.flux[face] = flux_of(weight);
-    STATE.sums.all.worth[face] =
-        STATE.weighting != LAYOUT_BY_PAPER ? flux_of(weight) : STATE.sums.all.flux[face];
+        STATE.sums.all.flux[face] = weight;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // point.glsl - what a point needs before its first sample: its BRDF in the map's space, expected and realised counts,
-// windows of the pools. As points_kernel.c and estimate.c, in double where these are, so that both take the same samples.
-// Needs brdf.glsl, tiles.glsl, lobe_variance.glsl and the constants LIGHT, SURFACE and VISIBILITY.
+// windows of the pools. As points_kernel.c and estimate.c, rounded as these are, so that both take the same samples. Needs
+// division.glsl, brdf.glsl, tiles.glsl, lobe_variance.glsl and the constants LIGHT, SURFACE and VISIBILITY.
 
 struct shading_point {
     uint pixel, hit, material_index;
@@ -16,14 +16,15 @@ struct prepared_point {
     float expected[LAYOUT_FACES]; // number of samples
     float surface_expected;
     uint surface_count, surface_seed, bin, seed;
-    bool is_calm; // shines, but need not weigh tiles
+    bool is_calm;  // shines, but need not weigh tiles
+    bool has_both; // samples of light and of the surface, however few
 };
 
 // A point that shines reads no pool of a bin, but weighs the tiles itself: in another pass, shade_tiles.comp; unless the
 // light in its lobe is calm. Where all light is even the surface has all samples.
 bool weighs_tiles(prepared_point p)
 {
-    return LIGHT == LAYOUT_LIGHT_BINS && !p.is_calm && p.surface_expected > 0.0 && p.expected[0] > 0.0;
+    return LIGHT == LAYOUT_LIGHT_BINS && !p.is_calm && p.has_both;
 }
 
 const uint TECHNIQUES = LIGHT == LAYOUT_LIGHT_FACES ? LAYOUT_FACES : LIGHT == LAYOUT_LIGHT_NONE ? 0u : 1u;
@@ -61,8 +62,9 @@ float need_of_lobe(brdf b)
 // The share given is what `need` is at an even split.
 float share_of_need(float need)
 {
-    const float for_surface = need * STEP.brdf_share, for_light = (1.0 - need) * (1.0 - STEP.brdf_share);
-    return for_surface > 0.0 ? for_surface / (for_surface + for_light) : 0.0;
+    precise float for_surface = need * STEP.brdf_share, for_light = (1.0 - need) * (1.0 - STEP.brdf_share);
+    precise float both = for_surface + for_light;
+    return for_surface > 0.0 ? divide(for_surface, both) : 0.0;
 }
 
 // Bins know light and cosine, and tiles light and BRDF, so that BRDF samples have only the lobe to look after, the more
@@ -124,40 +126,49 @@ float beta_of(uint face, vec3 normal)
     return max(beta, 0.0);
 }
 
-double worth_of_face(uint face, vec3 normal)
+// As in points_kernel.c: 2^-90, 2^-18.
+const float LEAST_WORTH = 8.07793567e-28, PART_OF_ANY = LIGHT == LAYOUT_LIGHT_FACES ? 1.0 / 262144.0 : 0.0;
+
+float worth_of_face(uint face, vec3 normal)
 {
     const float beta = beta_of(face, normal);
-    return (STEP.no_beta != 0u ? (beta > 0.0 ? 1.0LF : 0.0LF) : double(beta)) * STATE.sums.all.worth[face];
+    precise float worth = (STEP.no_beta != 0u && beta > 0.0 ? 1.0 : beta) * STATE.sums.all.worth[face];
+    return worth;
 }
 
 // Writes worths of the light techniques and returns their sum.
-double find_worths(vec3 normal, uint bin, out double worths[LAYOUT_FACES])
+float find_worths(vec3 normal, uint bin, out float worths[LAYOUT_FACES])
 {
-    double total = 0.0LF;
+    precise float total = 0.0;
     for (uint k = 0u; k < TECHNIQUES; k++) {
         if (LIGHT == LAYOUT_LIGHT_FACES)
             worths[k] = worth_of_face(k, normal);
         else if (LIGHT == LAYOUT_LIGHT_BINS)
-            worths[k] = STATE.bin_shares.at[bin] > 0.0 ? 1.0LF : 0.0LF;
+            worths[k] = STATE.bin_shares.at[bin] > 0.0 ? 1.0 : 0.0;
         else
-            worths[k] = STATE.sums.all.faces[LAYOUT_FACES] != 0u ? 1.0LF : 0.0LF;
+            worths[k] = STATE.sums.all.faces[LAYOUT_FACES] != 0u ? 1.0 : 0.0;
         total += worths[k];
     }
-    return LIGHT == LAYOUT_LIGHT_NONE ? 1.0LF : total;
+    return LIGHT == LAYOUT_LIGHT_NONE ? 1.0 : total;
 }
 
+// See expect_counts() in points_kernel.c.
 void expect_counts(vec3 normal, float share, inout prepared_point p)
 {
-    double worths[LAYOUT_FACES];
-    const double total = find_worths(normal, p.bin, worths);
-    const bool lit = total > 0.0LF;
+    float worths[LAYOUT_FACES];
+    const float total = find_worths(normal, p.bin, worths);
+    const bool lit = total >= LEAST_WORTH;
     // Where compensated tables only say that there is nothing to compensate, the surface gets all.
     const float of_dark = STATE.weighting == LAYOUT_COMPENSATED ? 1.0 : 0.0, samples = float(STEP.samples);
-    const float by_surface = samples * (lit ? share : of_dark);
-    const double light = (lit ? double(samples - by_surface) : 0.0LF) / (lit ? total : 1.0LF);
-    for (uint k = 0u; k < TECHNIQUES; k++)
-        p.expected[k] = float(worths[k] * light);
+    precise float by_surface = samples * (lit ? share : of_dark), by_light = samples - by_surface;
+    precise float to_divide = by_light * (1.0 - float(LAYOUT_FACES) * PART_OF_ANY), least = by_light * PART_OF_ANY;
+    const float light = lit ? divide(to_divide, total) : 0.0;
+    for (uint k = 0u; k < TECHNIQUES; k++) {
+        precise float expected = worths[k] * light + (worths[k] >= LEAST_WORTH ? least : 0.0);
+        p.expected[k] = expected;
+    }
     p.surface_expected = by_surface;
+    p.has_both = lit && by_surface > 0.0 && by_light > 0.0;
 }
 
 // ---- realised counts and windows ----
@@ -169,28 +180,48 @@ uint window_of(uint realised, uint pool, uint seed)
     return pool * STATE.pool_length + (multiply_high(choice, STATE.pool_length >> bits) << bits);
 }
 
-// Systematic rounding: see round_counts() in points_kernel.c.
+// Systematic rounding on its way through the techniques: see round_counts() in points_kernel.c. Sums begin with 1.
+struct rounding {
+    float least;        // part of a whole number from which on a sum is rounded up
+    float total, end;   // sum of all expected counts, and what becomes of it
+    float sum, reached; // of those so far
+    uint given;
+};
+
+rounding begin_rounding(uint seed, prepared_point p)
+{
+    precise float total = 1.0, least = 1.0 - unit_float(hash_combine(seed, LAYOUT_STREAM_ROUNDING));
+    for (uint k = 0u; k < TECHNIQUES; k++)
+        total += p.expected[k];
+    total += p.surface_expected;
+    return rounding(least, total, total > 1.0 ? 1.0 + float(STEP.samples) : 1.0, 1.0, 1.0, 1u);
+}
+
+// The realised count. The expected one becomes what it stands for.
+uint round_count(inout float expected, inout rounding r)
+{
+    precise float sum = r.sum + expected;
+    const float to = sum < r.total && sum < r.end ? sum : r.end;
+    const uint whole = uint(to);
+    precise float part = to - float(whole), between = to - r.reached;
+    const uint up_to = whole + (part >= r.least ? 1u : 0u), realised = up_to - r.given;
+    expected = between;
+    r.sum = sum;
+    r.reached = to;
+    r.given = up_to;
+    return realised;
+}
+
 void round_counts(uint seed, inout prepared_point p)
 {
-    double total = double(p.surface_expected), scale = 0.0LF;
-    double sum = double(unit_float(hash_combine(seed, LAYOUT_STREAM_ROUNDING))) + 2.98023223876953125e-8LF; // 2^-25
+    rounding r = begin_rounding(seed, p);
     uint given = 0u;
-    if (TECHNIQUES > 0u) {
-        total = double(p.expected[0]);
-        for (uint k = 1u; k < TECHNIQUES; k++)
-            total += double(p.expected[k]);
-        total += double(p.surface_expected);
-    }
-    if (total > 0.0LF)
-        scale = double(STEP.samples) / total;
     for (uint k = 0u; k < TECHNIQUES; k++) {
-        sum += double(p.expected[k]) * scale;
-        const uint up_to = uint(sum), realised = up_to - given;
-        p.end[k] = up_to;
+        const uint realised = round_count(p.expected[k], r);
         p.from[k] = window_of(realised, LIGHT == LAYOUT_LIGHT_BINS ? p.bin : k, seed) - given;
-        given = up_to;
+        p.end[k] = given += realised;
     }
-    p.surface_count = uint(sum + double(p.surface_expected) * scale) - given;
+    p.surface_count = round_count(p.surface_expected, r);
 }
 
 prepared_point prepare_with(shading_point given, scene_material m, uint seed)

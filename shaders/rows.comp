@@ -6,12 +6,15 @@
 // are something else: they come first, and only their sums are wanted.
 #include "common.glsl"
 #include "fixed_point.glsl"
+#include "face_sums.glsl"
+#include "division.glsl"
 #include "scan.glsl"
 
 layout(constant_id = 1) const uint TEXELS = 4u; // neighbours that a thread takes at a time
 layout(constant_id = 2) const bool READS_PAIRS = false; // of texels, of which there is an even number: as vector_at()
 
 const float LEAST_WEIGHT = 1.17549435e-38; // 2^-126
+const float LEVEL_PART = 0.318329315;      // (1 + 2^-14) / pi
 
 // What is known of the row, in registers: what lies in memory is looked up anew for each use.
 struct row_of_texels {
@@ -114,13 +117,19 @@ uint sum_row(row_of_texels row, float factor, bool is_wanted)
     return sum;
 }
 
-// The mean of the map for compensated weights: a little more, so that rounding leaves nothing of a constant map.
+// The mean of the map for compensated weights: see mean_luminance() in src/sampling/tables.c.
 float find_level()
 {
-    double flux = 0.0LF;
+    layout_row_sum fluxes[LAYOUT_FACES];
     for (uint face = 0u; face < LAYOUT_FACES; face++)
-        flux += STATE.sums.all.flux[face];
-    return float(flux / 12.566370614359172LF * (1.0LF + 1.0LF / 16384.0LF));
+        fluxes[face] = flux_of_face(face);
+    const int exponent = exponent_of_faces(fluxes, summand_bits(LAYOUT_FACES));
+    uint sum = 0u;
+    for (uint face = 0u; face < LAYOUT_FACES; face++)
+        sum += rescale(fluxes[face], exponent);
+    const float part = divide(LEVEL_PART, float(STATE.size) * float(STATE.size));
+    const float level = scale_sum(layout_row_sum(sum, exponent), part, 0);
+    return level >= LEAST_WEIGHT ? level : 0.0;
 }
 
 void main()

@@ -18,6 +18,7 @@ layout(constant_id = 6) const uint VISIBILITY = LAYOUT_SHADOWS_CAST;
 #include "cube.glsl"
 #include "elementary.glsl"
 #include "fixed_point.glsl"
+#include "division.glsl"
 #include "tables.glsl"
 #include "tiles.glsl"
 #include "brdf.glsl"

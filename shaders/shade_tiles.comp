@@ -15,6 +15,7 @@ const uint LIGHT = LAYOUT_LIGHT_BINS, SURFACE = LAYOUT_SURFACE_BRDF;
 #include "cube.glsl"
 #include "elementary.glsl"
 #include "fixed_point.glsl"
+#include "division.glsl"
 #include "scan.glsl"
 #include "tables.glsl"
 #include "tiles.glsl"

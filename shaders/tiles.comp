@@ -9,6 +9,7 @@
 #include "tables.glsl"
 #include "tiles.glsl"
 #include "fixed_point.glsl"
+#include "division.glsl"
 #include "scan.glsl"
 
 // Rows first ... first + count - 1 of all faces' rows, columns begin ... end - 1.
@@ -62,13 +63,18 @@ void find_densities(tile_area area, int exponent, uint total, uint column)
 // See find_spread() in tiles.c.
 float find_spread(tile_area area, int exponent, uint total)
 {
-    double squares = 0.0LF;
+    uint64_t squares = uint64_t(0);
     for (uint i = 0u; i < area.count; i++) {
-        const double part = double(rescale(segment(area, i), exponent));
+        const uint64_t part = uint64_t(rescale(segment(area, i), exponent));
         squares += part * part;
     }
-    const double part = squares > 0.0LF ? double(total) * double(total) / (double(area.count) * squares) : 1.0LF;
-    return STATE.tile_radius * float(part);
+    if (squares == uint64_t(0))
+        return STATE.tile_radius;
+    const uint64_t all = area.count * squares, lit = uint64_t(total) * total;
+    const uvec2 halves = unpackUint2x32(all);
+    const int cut = max(halves.y != 0u ? findMSB(halves.y) + 9 : findMSB(halves.x) - 23, 0);
+    precise float spread = STATE.tile_radius * divide(float(uint(lit >> cut)), float(uint(all >> cut)));
+    return spread;
 }
 
 void main()

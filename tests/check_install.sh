@@ -35,6 +35,11 @@ cmake --install "$build" --prefix "$prefix" >"$folder/log" || { cat "$folder/log
 [ -z "$(find "$prefix" -iname '*dragon*')" ] || fail 'the dragon was installed'
 [ -n "$(find "$prefix/share/heliostat" -name 'LICENSE-*')" ] || fail 'the licence of the environment map is missing'
 
+# Engines include the shaders on devices that have no doubles.
+if grep -rnE '\<(double|dvec[234]|dmat[234])\>|[0-9]LF\>' "$prefix/share/heliostat/shaders"; then
+    fail 'the installed shaders need doubles'
+fi
+
 echo '-- the example through CMake'
 cmake -S "$source/examples" -B "$folder/example" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_C_COMPILER="$cc" \
     -DCMAKE_C_FLAGS="$flags" >"$folder/log" || { cat "$folder/log"; fail 'configuring the example failed'; }

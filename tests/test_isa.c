@@ -122,7 +122,7 @@ static void compare_tables(const helio_tables *a, const helio_tables *b)
     assert_memory_equal(a->row_sums, b->row_sums, rows * sizeof *a->row_sums);
     assert_memory_equal(a->row_fluxes, b->row_fluxes, rows * sizeof *a->row_fluxes);
     assert_memory_equal(a->faces, b->faces, sizeof a->faces);
-    assert_memory_equal(a->flux, b->flux, sizeof a->flux);
+    assert_memory_equal(a->face_fluxes, b->face_fluxes, sizeof a->face_fluxes);
 }
 
 /* Both may be NULL. */

@@ -688,9 +688,8 @@ static void random_expected(uint64_t *state, uint32_t samples, float expected[TE
         expected[k] *= (float)samples / total;
 }
 
-/* One point of a block; the lanes beside it must not matter. */
-static void round_counts(const float expected[TECHNIQUES], uint32_t samples, float offset,
-                         uint32_t realised[TECHNIQUES])
+/* One point of a block; the lanes beside it must not matter. expected becomes what the counts stand for. */
+static void round_counts(float expected[TECHNIQUES], uint32_t samples, float offset, uint32_t realised[TECHNIQUES])
 {
     static point_block block;
     block.count = 1;
@@ -698,8 +697,10 @@ static void round_counts(const float expected[TECHNIQUES], uint32_t samples, flo
     for (int k = 0; k < TECHNIQUES; k++)
         block.expected[k][0] = expected[k];
     kernels_of(ISA_SCALAR)->round_counts(samples, &block);
-    for (int k = 0; k < TECHNIQUES; k++)
+    for (int k = 0; k < TECHNIQUES; k++) {
         realised[k] = block.realised[k][0];
+        expected[k] = block.expected[k][0];
+    }
 }
 
 static void realised_counts_sum_exactly_and_stay_next_to_the_expected(void **state)
@@ -708,17 +709,22 @@ static void realised_counts_sum_exactly_and_stay_next_to_the_expected(void **sta
     uint64_t random = 14;
     for (int i = 0; i < 200000; i++) {
         uint32_t samples = i % 2 ? 1 + random_bits(&random) % 128 : 1 + random_bits(&random) % 8192;
-        float expected[TECHNIQUES], offset = (float)(random_bits(&random) >> 8) * 0x1p-24f;
+        float given[TECHNIQUES], expected[TECHNIQUES], offset = (float)(random_bits(&random) >> 8) * 0x1p-24f;
         if (i % 8 == 0)
             offset = i % 16 ? 0.0f : 0x1.fffffep-1f;
         uint32_t realised[TECHNIQUES], sum = 0;
-        random_expected(&random, samples, expected);
+        random_expected(&random, samples, given);
+        memcpy(expected, given, sizeof expected);
         round_counts(expected, samples, offset, realised);
         for (int k = 0; k < TECHNIQUES; k++) {
             sum += realised[k];
             if (expected[k] == 0.0f)
                 assert_int_equal(realised[k], 0);
-            assert_true(fabs((double)realised[k] - (double)expected[k]) < 1 + 1e-6 * samples);
+            if (given[k] == 0.0f)
+                assert_true(expected[k] == 0.0f);
+            assert_true(expected[k] >= 0.0f);
+            assert_true(fabsf(expected[k] - given[k]) <= 1e-6f * (1.0f + (float)samples));
+            assert_true(fabs((double)realised[k] - (double)expected[k]) < 1);
         }
         assert_int_equal(sum, samples);
     }
@@ -731,25 +737,49 @@ static void realised_counts_have_the_expected_mean(void **state)
     uint64_t random = 15;
     for (int i = 0; i < 300; i++) {
         uint32_t samples = i % 3 == 0 ? 8192 : 1 + random_bits(&random) % 256;
-        float expected[TECHNIQUES];
+        float given[TECHNIQUES], expected[TECHNIQUES];
         double mean[TECHNIQUES] = {0};
-        random_expected(&random, samples, expected);
+        random_expected(&random, samples, given);
         for (int k = 0; k < OFFSETS; k++) {
             uint32_t realised[TECHNIQUES];
+            memcpy(expected, given, sizeof expected);
             round_counts(expected, samples, ((float)k + 0.5f) / OFFSETS, realised);
             for (int t = 0; t < TECHNIQUES; t++)
                 mean[t] += (double)realised[t] / OFFSETS;
         }
-        /* The offsets are steps, and single precision leaves the sum of the expected counts next to samples. */
-        for (int t = 0; t < TECHNIQUES; t++)
-            assert_true(fabs(mean[t] - (double)expected[t]) < 1.0 / OFFSETS + 1e-6 * samples);
+        for (int t = 0; t < TECHNIQUES; t++) /* the offsets are steps, and a count that is expected is a float */
+            assert_true(fabs(mean[t] - (double)expected[t]) < 1.0 / OFFSETS + 1e-7 * samples);
     }
+}
+
+/* Over all offsets that there are. */
+static void small_counts_have_the_expected_mean_exactly(void **state)
+{
+    const float given[TECHNIQUES] = {0x1.234p-20f, 0.0f, 1.3f, 0x1.8p-13f, 0.0f, 1.9f, 0x1.1p-18f};
+    static point_block block;
+    uint32_t sums[TECHNIQUES] = {0};
+    (void)state;
+    block.count = POINT_BLOCK;
+    for (uint32_t first = 0; first < 1 << 24; first += POINT_BLOCK) {
+        for (uint32_t i = 0; i < POINT_BLOCK; i++) {
+            block.rounding[i] = (float)(first + i) * 0x1p-24f;
+            for (int k = 0; k < TECHNIQUES; k++)
+                block.expected[k][i] = given[k];
+        }
+        kernels_of(ISA_SCALAR)->round_counts(3, &block);
+        for (uint32_t i = 0; i < POINT_BLOCK; i++)
+            for (int k = 0; k < TECHNIQUES; k++)
+                sums[k] += block.realised[k][i];
+    }
+    for (int k = 0; k < TECHNIQUES; k++)
+        assert_true((double)sums[k] * 0x1p-24 == (double)block.expected[k][0]);
+    assert_int_equal(sums[0], 9 << 1); /* in steps of 2^-23 the nearest, 9.1 of them */
 }
 
 static void no_light_means_no_samples(void **state)
 {
     (void)state;
-    const float expected[TECHNIQUES] = {0};
+    float expected[TECHNIQUES] = {0};
     uint32_t realised[TECHNIQUES] = {1, 1, 1, 1, 1, 1, 1};
     round_counts(expected, 64, 0.999f, realised);
     for (int k = 0; k < TECHNIQUES; k++)
@@ -778,6 +808,7 @@ int main(void)
         cmocka_unit_test(beta_is_continuous),
         cmocka_unit_test(realised_counts_sum_exactly_and_stay_next_to_the_expected),
         cmocka_unit_test(realised_counts_have_the_expected_mean),
+        cmocka_unit_test(small_counts_have_the_expected_mean_exactly),
         cmocka_unit_test(no_light_means_no_samples),
     };
     return cmocka_run_group_tests_name("pools", tests, NULL, NULL);

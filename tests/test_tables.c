@@ -576,6 +576,38 @@ static double face_weight(const fixture *f, size_t face)
     return sum;
 }
 
+/* By which points divide their samples. A face that is next to black is not lost. */
+static void check_worths(const fixture *f)
+{
+    const float *worth = f->tables->worth, least = 0x1p-60f;
+    double flux[6], greatest = 0;
+    float most = 0;
+    helio_tables_flux(f->tables, flux);
+    for (int face = 0; face < 6; face++) {
+        greatest = fmax(greatest, flux[face]);
+        most = fmaxf(most, worth[face]);
+    }
+    assert_true(greatest == 0 ? most == 0 : most >= 1 && most <= 2);
+    for (int face = 0; face < 6 && greatest > 0; face++) {
+        const double expected = flux[face] / greatest * (double)most;
+        if (expected < (double)least)
+            assert_true(worth[face] == (flux[face] > 0 ? least : 0.0f));
+        else
+            assert_true(fabs((double)worth[face] / expected - 1) < 1e-6);
+    }
+}
+
+static void faces_are_worth_their_flux(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < MAPS; kind++)
+        for (int i = 0; i < 2; i++) {
+            fixture f = make_fixture((map_kind)kind, 17, i ? HELIO_WEIGHTING_PAPER : HELIO_WEIGHTING_SOLID_ANGLE);
+            check_worths(&f);
+            destroy_fixture(&f);
+        }
+}
+
 static void faces_of_the_whole_map_have_their_share(void **state)
 {
     (void)state;
@@ -642,7 +674,7 @@ static void assert_same_tables(const fixture *a, const fixture *b)
     assert_memory_equal(a->tables->rows, b->tables->rows, CUBE_FACES * size * (size + 1) * sizeof(uint32_t));
     assert_memory_equal(a->tables->marginals, b->tables->marginals, CUBE_FACES * (size + 1) * sizeof(uint32_t));
     assert_memory_equal(a->tables->faces, b->tables->faces, sizeof a->tables->faces);
-    assert_memory_equal(a->tables->flux, b->tables->flux, sizeof a->tables->flux);
+    assert_memory_equal(a->tables->face_fluxes, b->tables->face_fluxes, sizeof a->tables->face_fluxes);
 }
 
 static void tables_have_the_same_bits_on_any_threads(void **state)
@@ -879,6 +911,7 @@ int main(void)
         cmocka_unit_test(drawn_directions_lead_back_to_their_numbers),
         cmocka_unit_test(a_drawn_direction_has_the_density_it_was_drawn_with),
         cmocka_unit_test(draws_follow_the_map),
+        cmocka_unit_test(faces_are_worth_their_flux),
         cmocka_unit_test(faces_of_the_whole_map_have_their_share),
         cmocka_unit_test(draws_of_the_whole_map_follow_it),
         cmocka_unit_test(tables_have_the_same_bits_on_any_threads),

@@ -145,6 +145,53 @@ static void pools_of_bins_hold_the_same_samples(void **state)
     world_destroy(&w);
 }
 
+/* ---- evenness ---- */
+
+enum { EVEN_SIZE = 40 };
+
+/* Noise of this standard deviation, where the light is 1 on average; of 0.016 is its variance to be less where light is
+ * even. An odd kind has steps between tiles as well. */
+static void fill_uneven(helio_environment *environment, float deviation, float brightness, int kind)
+{
+    uint64_t seed = 3;
+    for (size_t i = 0; i < 6 * EVEN_SIZE * EVEN_SIZE; i++) {
+        const float noise = deviation * 3.4641f * ((float)random_unit(&seed) - 0.5f);
+        const float slope = kind % 2 ? 0.1f * ((float)(i % EVEN_SIZE) / EVEN_SIZE - 0.5f) : 0.0f;
+        for (size_t c = 0; c < 3; c++)
+            environment->cube[3 * i + c] = brightness * (1.0f + noise + slope);
+    }
+    environment->frame++;
+}
+
+/* Whatever its brightness. */
+static void light_is_as_even_as_on_the_cpu(void **state)
+{
+    static const float deviations[] = {0.0f, 0.05f, 0.12f, 0.13f, 0.2f}; /* 0.126 is in the middle */
+    static const float brightnesses[] = {1e-36f, 1e-30f, 1e-10f, 1.0f, 1e10f, 1e30f, 1e38f};
+    vulkan_world w = world_make();
+    (void)state;
+    world_make_light(&w, EVEN_SIZE, HELIO_WEIGHTING_SOLID_ANGLE, &(helio_pools_desc){.length = 64, .bins = 2});
+    assert_true(w.pools->is_automatic);
+    for (size_t b = 0; b < sizeof brightnesses / sizeof *brightnesses; b++)
+        for (size_t d = 0; d < sizeof deviations / sizeof *deviations; d++) {
+            fill_uneven(w.environment, deviations[d], brightnesses[b], (int)b);
+            world_update(&w, 1, 0);
+            struct layout_sums *found = read_buffer(&w.commands, &w.light.sums, sizeof *found);
+            assert_true(w.pools->is_even == (deviations[d] < 0.125f));
+            if (w.pools->is_even != (found->uneven_faces == 0))
+                fail_msg("noise of %g x %g: %u faces are uneven", (double)deviations[d], (double)brightnesses[b],
+                         found->uneven_faces);
+            free(found);
+        }
+    fill_cube(w.environment, MAP_BLACK, 0);
+    world_update(&w, 1, 0);
+    struct layout_sums *found = read_buffer(&w.commands, &w.light.sums, sizeof *found);
+    assert_true(w.pools->is_even && found->uneven_faces == 0);
+    free(found);
+    world_destroy_light(&w);
+    world_destroy(&w);
+}
+
 /* ---- chi-square ---- */
 
 enum { CHI_SIZE = 8, CHI_TEXELS = 6 * CHI_SIZE * CHI_SIZE, CHI_TESTS = 64 };
@@ -254,6 +301,7 @@ int main(void)
         cmocka_unit_test(pools_of_faces_hold_the_same_samples),
         cmocka_unit_test(the_pool_of_the_map_holds_the_same_samples),
         cmocka_unit_test(pools_of_bins_hold_the_same_samples),
+        cmocka_unit_test(light_is_as_even_as_on_the_cpu),
         cmocka_unit_test(samples_of_the_device_follow_the_densities),
         cmocka_unit_test(groups_of_many_threads_draw_the_same),
     };

@@ -22,7 +22,7 @@ extern "C" {
 #endif
 
 /* Objects that you have made and keep. The instance and the device are for Vulkan 1.2 or later, and of the device these
- * features are enabled, which nobody can check: bufferDeviceAddress, scalarBlockLayout, shaderInt64, shaderFloat64. */
+ * features are enabled, which nobody can check: bufferDeviceAddress, scalarBlockLayout, shaderInt64. */
 typedef struct helio_vulkan_desc {
     PFN_vkGetInstanceProcAddr get_instance_proc_addr; /* required, as are: */
     VkInstance instance;

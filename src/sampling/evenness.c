@@ -42,7 +42,7 @@ static double step_between(const tile_moments *a, const tile_moments *b)
 /* What all that is uneven on a face may come to. */
 static double most_of(const helio_tables *tables, uint32_t face)
 {
-    const double angle = 4.0 * PI / CUBE_FACES, mean = tables->flux[face] / angle;
+    const double angle = 4.0 * PI / CUBE_FACES, mean = tables_flux(tables->size, tables->face_fluxes[face]) / angle;
     return GREATEST_VARIANCE * mean * mean * angle;
 }
 
@@ -57,7 +57,7 @@ static bool borders_are_too_much(const tiles *t, const helio_tables *tables, uin
         for (uint32_t column = 0; column < t->per_edge; column++) {
             const uint32_t position = t->positions[(face * t->per_edge + row) * t->per_edge + column];
             const tile_moments m = {.angle = (double)t->angle[position],
-                                    .light = tables_flux_of(tables, t->totals[position])};
+                                    .light = tables_flux(t->size, t->totals[position])};
             sum += column > 0 ? step_between(&above[column - 1], &m) : 0.0;
             sum += row > 0 ? step_between(&above[column], &m) : 0.0;
             above[column] = m;

@@ -78,7 +78,7 @@ static inline float normal_bin_cosine(const normal_bin *bin, float cosine)
     float within = cosine + bin->reach, risen = cosine + edge;
     within = within > 0.0f ? within : 0.0f;
     risen = risen > 0.0f ? risen : 0.0f;
-    float bent = risen * risen / (4.0f * edge); /* meets the cosine at `edge`, where both rise by 1 */
+    float bent = risen * risen * (1.0f / (4.0f * edge)); /* meets the cosine at `edge`, where both rise by 1 */
     return (cosine < edge ? bent : cosine) + 0.01f * within;
 }
 

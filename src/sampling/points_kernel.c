@@ -85,22 +85,30 @@ static void look_at_lobes(const helio_pools *pools, float brdf_share, point_bloc
 
 /* ---- expected counts ---- */
 
-/* What the pools are worth to a point. In double, as the flux of a dark map may be less than a float can hold. */
+/* What the pools are worth to a point. */
 typedef struct pool_worths {
-    alignas(64) double of_pool[CUBE_FACES][POINT_BLOCK]; /* beta_f x flux_f for faces */
-    alignas(64) double total[POINT_BLOCK];
+    alignas(64) float of_pool[CUBE_FACES][POINT_BLOCK]; /* beta_f x flux_f, in proportion, for faces */
+    alignas(64) float total[POINT_BLOCK];
 } pool_worths;
 
-static void weigh_face(const point_block *block, uint32_t count, uint32_t face, double flux, bool no_beta,
-                       pool_worths *worths)
+/* A face that is worth less to a point rises above its horizon by rounding alone, and machines may take that for 0. */
+static const float LEAST_WORTH = 0x1p-90f;
+
+/* Of the light samples, which each face with light gets beyond its part: more than what counts are rounded by, so that
+ * no face is lost to that. */
+static const float PART_OF_ANY = 0x1p-18f;
+
+/* no_beta is a constant where this is expanded. */
+static inline __attribute__((always_inline)) void weigh_face(const point_block *block, uint32_t count, uint32_t face,
+                                                             float flux, bool no_beta, pool_worths *worths)
 {
     const float *const axes[3] = {block->normal.x, block->normal.y, block->normal.z};
     const float *along = axes[face / 2], *across = axes[face / 2 == 0 ? 1 : 0], *beside = axes[face / 2 == 2 ? 1 : 2];
     const float sign = face % 2 == 0 ? 1.0f : -1.0f;
 #pragma omp simd
     for (uint32_t i = 0; i < count; i++) {
-        float beta = strategy_beta(sign * along[i], across[i], beside[i]);
-        double worth = (no_beta ? (beta > 0.0f ? 1.0 : 0.0) : (double)beta) * flux;
+        const float beta = strategy_beta(sign * along[i], across[i], beside[i]);
+        const float worth = (no_beta && beta > 0.0f ? 1.0f : beta) * flux;
         worths->of_pool[face][i] = worth;
         worths->total[i] += worth;
     }
@@ -113,80 +121,82 @@ static void weigh_pools(const helio_pools *pools, const point_block *block, bool
     for (uint32_t i = 0; i < count; i++) {
         bool lit =
             pools->bins != NULL ? pools->bins->shares[block->pools[0][i]] > 0.0f : tables->faces[CUBE_FACES] != 0;
-        worths->total[i] = worths->of_pool[0][i] = lit ? 1.0 : 0.0;
+        worths->total[i] = worths->of_pool[0][i] = lit ? 1.0f : 0.0f;
     }
     if (pools->parts.light != STRATEGY_LIGHT_FACES)
         return;
     for (uint32_t i = 0; i < count; i++)
-        worths->total[i] = 0.0;
-    for (uint32_t face = 0; face < CUBE_FACES; face++)
-        weigh_face(block, count, face, tables->worth[face], no_beta, worths);
+        worths->total[i] = 0.0f;
+    for (uint32_t face = 0; face < CUBE_FACES && !no_beta; face++)
+        weigh_face(block, count, face, tables->worth[face], false, worths);
+    for (uint32_t face = 0; face < CUBE_FACES && no_beta; face++)
+        weigh_face(block, count, face, tables->worth[face], true, worths);
 }
 
-static void expect(uint32_t count, const double *worths, const double *shares, float *expected)
+/* least: of each pool that is worth anything. */
+static void expect(uint32_t count, const float *worths, const float *shares, const float *least, float *expected)
 {
 #pragma omp simd
-    for (uint32_t i = 0; i < count; i++)
-        expected[i] = (float)(worths[i] * shares[i]);
+    for (uint32_t i = 0; i < count; i++) {
+        const float worth = worths[i], more = least[i];
+        expected[i] = worth * shares[i] + (worth >= LEAST_WORTH ? more : 0.0f);
+    }
 }
 
-/* Expected counts m_k: samples in proportion to beta_f x flux_f, and a share for the surface. All are 0 where no
- * light can come from above the horizon; where compensated tables only say that there is nothing to compensate, the
- * surface gets all. */
+/* Expected counts m_k, but for rounding: samples in proportion to beta_f x flux_f, and a share for the surface. All are
+ * 0 where no light can come from above the horizon; where compensated tables only say that there is nothing to
+ * compensate, the surface gets all. */
 static void expect_counts(const helio_pools *pools, const helio_estimate_desc *desc, point_block *block)
 {
     const uint32_t count = padded(block);
-    const float samples = (float)desc->samples;
+    const float samples = (float)desc->samples, of_any = pools->techniques > 1 ? PART_OF_ANY : 0.0f;
     const bool is_compensated = pools->tables->weighting == HELIO_WEIGHTING_COMPENSATED;
     pool_worths worths;
-    alignas(64) double shares[POINT_BLOCK];
+    alignas(64) float shares[POINT_BLOCK], least[POINT_BLOCK];
     memset(block->expected, 0, sizeof block->expected);
     if (pools->techniques > 0)
         weigh_pools(pools, block, desc->no_beta, &worths);
     else
         for (uint32_t i = 0; i < count; i++)
-            worths.total[i] = 1.0;
+            worths.total[i] = 1.0f;
 #pragma omp simd
     for (uint32_t i = 0; i < count; i++) {
-        bool lit = worths.total[i] > 0.0;
+        bool lit = worths.total[i] >= LEAST_WORTH;
         float by_surface = samples * (lit ? block->surface_share[i] : is_compensated ? 1.0f : 0.0f);
-        shares[i] = (lit ? (double)(samples - by_surface) : 0.0) / (lit ? worths.total[i] : 1.0);
+        float by_light = lit ? samples - by_surface : 0.0f;
+        least[i] = by_light * of_any;
+        shares[i] = by_light * (1.0f - CUBE_FACES * of_any) / (lit ? worths.total[i] : 1.0f);
         block->expected[TECHNIQUE_SURFACE][i] = by_surface;
     }
     for (uint32_t k = 0; k < pools->techniques; k++)
-        expect(count, worths.of_pool[k], shares, block->expected[k]);
+        expect(count, worths.of_pool[k], shares, least, block->expected[k]);
 }
 
 /* ---- realised counts ---- */
 
-/* In double, because the offset must not be rounded away beside a large sum. Counts are scaled to sum to samples, from
- * which single precision keeps them a little away; that the sum then comes out next to a whole number is no matter, as
- * offsets are whole multiples of 2^-24, and half-way between two of them is where rounding starts. */
+/* Sums of expected counts begin with 1, so that they are multiples of 2^-23, and with `rounding`, a multiple of 2^-24,
+ * reach the next whole number exactly as often as they should. The last technique that adds to them gets what is left
+ * of the samples. What lies between two sums is from then on the expected count. */
 void KERNEL(round_counts)(uint32_t samples, point_block *block)
 {
     const uint32_t count = padded(block);
-    alignas(64) double scales[POINT_BLOCK], sums[POINT_BLOCK];
-    alignas(64) int32_t given[POINT_BLOCK];
+    const float all = 1.0f + (float)(int32_t)samples;
+#pragma omp simd
     for (uint32_t i = 0; i < count; i++) {
-        scales[i] = 0.0;
-        sums[i] = (double)block->rounding[i] + 0x1p-25;
-        given[i] = 0;
-    }
-    for (int32_t k = 0; k < TECHNIQUES; k++) {
-#pragma omp simd
-        for (uint32_t i = 0; i < count; i++)
-            scales[i] += (double)block->expected[k][i];
-    }
-#pragma omp simd
-    for (uint32_t i = 0; i < count; i++)
-        scales[i] = scales[i] > 0.0 ? (double)samples / (scales[i] > 0.0 ? scales[i] : 1.0) : 0.0;
-    for (int32_t k = 0; k < TECHNIQUES; k++) {
-#pragma omp simd
-        for (uint32_t i = 0; i < count; i++) {
-            sums[i] += (double)block->expected[k][i] * scales[i];
-            int32_t up_to = (int32_t)sums[i];
-            block->realised[k][i] = (uint32_t)(up_to - given[i]);
-            given[i] = up_to;
+        const float least = 1.0f - block->rounding[i]; /* what is rounded up */
+        float total = 1.0f, sum = 1.0f, reached = 1.0f;
+        int32_t given = 1;
+        for (int k = 0; k < TECHNIQUES; k++)
+            total += block->expected[k][i];
+        const float end = total > 1.0f ? all : 1.0f;
+        for (int k = 0; k < TECHNIQUES; k++) {
+            sum += block->expected[k][i];
+            const float to = sum < total && sum < end ? sum : end;
+            const int32_t whole = (int32_t)to, up_to = whole + (to - (float)whole >= least);
+            block->expected[k][i] = to - reached;
+            block->realised[k][i] = (uint32_t)(up_to - given);
+            reached = to;
+            given = up_to;
         }
     }
 }

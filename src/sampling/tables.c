@@ -12,7 +12,12 @@
 #include "core/random.h"
 #include "sampling/kernels.h"
 
-enum { ROWS_AT_ONCE = 16 }; /* the piece of work of a thread */
+#include <float.h>
+
+enum {
+    ROWS_AT_ONCE = 16,     /* the piece of work of a thread */
+    LEAST_WORTH_BITS = 60, /* a face with light is worth 2^-this at least, where the brightest is worth 1 or more */
+};
 
 /* ---- creation ---- */
 
@@ -182,26 +187,40 @@ static void find_row_densities(helio_tables *tables, size_t face)
     }
 }
 
-double tables_flux_of(const helio_tables *tables, row_sum sum)
+/* sum x 2^-exponent x factor x 2^to. Of the sum 24 bits, so that it need not be rounded. */
+static float scale_sum(row_sum row, float factor, int to)
 {
-    return ldexp((double)sum.sum, -sum.exponent) * 4.0 / ((double)tables->size * (double)tables->size);
+    const int cut = row.sum >> 24 != 0 ? 8 - __builtin_clz(row.sum) : 0;
+    return ldexpf((float)(int32_t)(row.sum >> cut) * factor, cut - row.exponent + to);
 }
 
 static void find_fluxes(helio_tables *tables)
 {
     const size_t size = tables->size;
     for (size_t face = 0; face < CUBE_FACES; face++)
-        tables->flux[face] =
-            tables_flux_of(tables, tables_sum_rows(tables->row_fluxes + face * size, tables->size, NULL));
+        tables->face_fluxes[face] = tables_sum_rows(tables->row_fluxes + face * size, tables->size, NULL);
 }
 
-/* A little more, so that rounding leaves nothing of a constant map. */
+/* A little more, so that rounding leaves nothing of a constant map; 0 where it is so little that machines may take it
+ * for that. */
 static float mean_luminance(const helio_tables *tables)
 {
-    double flux = 0.0;
-    for (int face = 0; face < CUBE_FACES; face++)
-        flux += tables->flux[face];
-    return (float)(flux / (4.0 * PI) * (1.0 + 0x1p-14));
+    const float part = (float)((1.0 + 0x1p-14) / PI), size = (float)tables->size;
+    const row_sum flux = tables_sum_rows(tables->face_fluxes, CUBE_FACES, NULL);
+    const float mean = scale_sum(flux, part / (size * size), 0);
+    return mean >= FLT_MIN ? mean : 0.0f;
+}
+
+/* In floats, whatever the fluxes are, as only their ratios matter. */
+static void find_worths(helio_tables *tables)
+{
+    const row_sum *sums = tables->weighting == HELIO_WEIGHTING_PAPER ? tables->face_fluxes : tables->face_sums;
+    const int to = common_exponent(sums, CUBE_FACES, 1);
+    for (size_t face = 0; face < CUBE_FACES; face++) {
+        const bool is_dark = sums[face].sum == 0 || top_bit(sums[face]) + to < -LEAST_WORTH_BITS;
+        const float least = sums[face].sum != 0 ? ldexpf(1.0f, -LEAST_WORTH_BITS) : 0.0f;
+        tables->worth[face] = is_dark ? least : scale_sum(sums[face], 1.0f, to);
+    }
 }
 
 static void build_face(void *data, size_t face)
@@ -213,9 +232,7 @@ static void build_face(void *data, size_t face)
     find_row_densities(tables, face);
     tables->face_sums[face] = weight;
     if (tables->weighting == HELIO_WEIGHTING_SOLID_ANGLE)
-        tables->flux[face] = tables_flux_of(tables, weight);
-    tables->worth[face] =
-        tables->weighting == HELIO_WEIGHTING_COMPENSATED ? tables_flux_of(tables, weight) : tables->flux[face];
+        tables->face_fluxes[face] = weight;
 }
 
 helio_status helio_tables_update(helio_tables *tables)
@@ -234,6 +251,7 @@ helio_status helio_tables_update(helio_tables *tables)
     for_all_rows(tables, build_row);
     context_parallel_for(tables->environment->context, CUBE_FACES, build_face, tables);
     tables_sum_rows(tables->face_sums, CUBE_FACES, tables->faces);
+    find_worths(tables);
     tables->frame = tables->environment->frame;
     return HELIO_OK;
 }
@@ -313,7 +331,7 @@ uint64_t helio_tables_frame(const helio_tables *tables)
 void helio_tables_flux(const helio_tables *tables, double flux[6])
 {
     for (int face = 0; face < CUBE_FACES; face++)
-        flux[face] = tables->flux[face];
+        flux[face] = tables_flux(tables->size, tables->face_fluxes[face]);
 }
 
 helio_table_view helio_tables_view(const helio_tables *tables, uint32_t face)

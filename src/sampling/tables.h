@@ -34,11 +34,12 @@ struct helio_tables {
     row_sum *row_sums;    /* [6][R]: of the table's weights */
     row_sum *row_fluxes;  /* [6][R]: of luminance x solid angle; the same array for SOLID_ANGLE */
     row_sum face_sums[6]; /* of the marginals */
-    uint32_t faces[7];    /* prefix sums over the faces: how the strategy LIGHT divides the whole map */
-    double flux[6];       /* radiance unit x sr */
-    double worth[6];      /* what a point divides its samples among the faces by: the flux, but for COMPENSATED that of
-                             what is above the level */
-    float level;          /* luminance that does not count, for COMPENSATED; else 0 */
+    row_sum face_fluxes[6]; /* of row_fluxes */
+    uint32_t faces[7];      /* prefix sums over the faces: how the strategy LIGHT divides the whole map */
+    float worth[6];         /* what a point divides its samples among the faces by, in proportion: the flux, but for
+                               COMPENSATED that of what is above the level. 1 to 2 for the greatest; 2^-60 or more unless
+                               there is no light */
+    float level;            /* luminance that does not count, for COMPENSATED; else 0 */
 };
 
 /* One face of the tables. */
@@ -94,8 +95,11 @@ static inline float tables_face_probability(const helio_tables *tables, uint32_t
  * wanted. */
 row_sum tables_sum_rows(const row_sum *rows, uint32_t count, uint32_t *sums);
 
-/* The integral that a sum of weights by solid angle stands for; radiance unit x sr. */
-double tables_flux_of(const helio_tables *tables, row_sum sum);
+/* The flux, radiance unit x sr, of which a sum of the texels' luminance x solid angle / (4 / K sr) tells. */
+static inline double tables_flux(uint32_t size, row_sum sum)
+{
+    return ldexp((double)sum.sum, -sum.exponent) * 4.0 / ((double)size * (double)size);
+}
 
 /* Where x, a fraction of 2^32 that falls into a cell of prefix sums [count + 1], lies inside of that cell: a fraction
  * of 2^32 again. The sums may be a piece of longer ones, which does not begin with 0. All in integers. */

@@ -155,14 +155,18 @@ static void find_segment_densities(tiles *t, const row_sum *segments, uint32_t r
     }
 }
 
-/* By its rows alone: (sum)^2 / (rows x sum of squares) is the part of them that even light would need. */
+/* By its rows alone: (sum)^2 / (rows x sum of squares) is the part of them that even light would need. In integers,
+ * of which 24 bits are divided. */
 static float find_spread(const tiles *t, const uint32_t *sums, uint32_t rows)
 {
-    double squares = 0.0;
+    uint64_t squares = 0;
     for (uint32_t i = 0; i < rows; i++)
-        squares += (double)(sums[i + 1] - sums[i]) * (double)(sums[i + 1] - sums[i]);
-    const double total = (double)sums[rows], part = squares > 0.0 ? total * total / ((double)rows * squares) : 1.0;
-    return t->radius * (float)part;
+        squares += (uint64_t)(sums[i + 1] - sums[i]) * (sums[i + 1] - sums[i]);
+    if (squares == 0)
+        return t->radius;
+    const uint64_t all = rows * squares, lit = (uint64_t)sums[rows] * sums[rows]; /* at most `all` */
+    const int cut = all >> 24 != 0 ? 40 - __builtin_clzll(all) : 0;
+    return t->radius * ((float)(int32_t)(lit >> cut) / (float)(int32_t)(all >> cut));
 }
 
 /* What the rows of a row of tiles hold in each tile. */

@@ -56,7 +56,7 @@ static helio_status create_buffers(vulkan_light *light)
          "the light in lobes"},
         {&light->greatest, BUFFER_ON_DEVICE, t->count, sizeof(float), "the probabilities of tiles"},
         {&light->list_starts, BUFFER_ON_DEVICE, t->count + 1, sizeof(uint32_t), "the lengths of lists"},
-        {&light->moments, BUFFER_ON_DEVICE, is_automatic(light) ? t->count : 0, 3 * sizeof(double),
+        {&light->moments, BUFFER_ON_DEVICE, is_automatic(light) ? t->count : 0, 3 * sizeof(float),
          "the moments of tiles"},
         {&light->tile_light, BUFFER_ON_DEVICE, t->count, sizeof(control_matrix), "the known light of tiles"},
         {&light->tile_hues, BUFFER_ON_DEVICE, t->count + 1, 4 * sizeof(float), "the hues of tiles"},

@@ -64,7 +64,7 @@ static helio_status create_device(helio_device *device)
                                                    .bufferDeviceAddress = VK_TRUE};
     const VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
                                                 .pNext = &features12,
-                                                .features = {.shaderInt64 = VK_TRUE, .shaderFloat64 = VK_TRUE}};
+                                                .features = {.shaderInt64 = VK_TRUE}};
     const VkDeviceCreateInfo create = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                        .pNext = &features,
                                        .queueCreateInfoCount = families[0] != families[1] ? 2 : 1,

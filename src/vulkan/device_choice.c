@@ -92,7 +92,6 @@ static void find_lacks(const vulkan_functions *vk, device_choice *choice)
         lacks = !features12.bufferDeviceAddress      ? "addresses of buffers (bufferDeviceAddress)"
                 : !features12.scalarBlockLayout      ? "memory laid out by numbers (scalarBlockLayout)"
                 : !features.features.shaderInt64     ? "integers of 64 bits (shaderInt64)"
-                : !features.features.shaderFloat64   ? "numbers of double precision (shaderFloat64)"
                 : choice->queue_family == UINT32_MAX ? "a queue for computing"
                                                      : "";
     }

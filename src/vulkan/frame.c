@@ -107,7 +107,9 @@ static void tell_light(const vulkan_light *light, uint32_t index, helio_frame_in
 {
     if (light->slots[index].is_map)
         info->bad = map_bad_pixels(&light->map, index);
-    memcpy(info->flux, light_sums(light, index)->flux, sizeof info->flux);
+    const struct layout_row_sum *flux = light_sums(light, index)->flux;
+    for (int face = 0; face < CUBE_FACES; face++)
+        info->flux[face] = tables_flux(light->state.size, (row_sum){flux[face].sum, flux[face].exponent});
 }
 
 /* Waits for the slot's list and learns what it took and counted. */
