@@ -11,6 +11,7 @@ install(DIRECTORY assets/sky DESTINATION ${CMAKE_INSTALL_DATADIR}/heliostat)
 if(HELIO_WITH_VULKAN)
     install(DIRECTORY shaders/ DESTINATION ${CMAKE_INSTALL_DATADIR}/heliostat/shaders FILES_MATCHING PATTERN "*.glsl"
             PATTERN "layout.h")
+    install(FILES src/sampling/rules.h DESTINATION ${CMAKE_INSTALL_DATADIR}/heliostat/shaders/sampling)
 else()
     set(WITHOUT_VULKAN PATTERN "vulkan.h" EXCLUDE) # it needs a header that may not be there
 endif()

@@ -6,7 +6,7 @@ set(SHADER_FOLDER "${CMAKE_CURRENT_SOURCE_DIR}/shaders")
 set(SHADER_BINARIES "${CMAKE_CURRENT_BINARY_DIR}/shaders")
 file(MAKE_DIRECTORY "${SHADER_BINARIES}")
 file(GLOB SHADER_INCLUDES CONFIGURE_DEPENDS "${SHADER_FOLDER}/*.glsl")
-list(APPEND SHADER_INCLUDES "${SHADER_FOLDER}/layout.h")
+list(APPEND SHADER_INCLUDES "${SHADER_FOLDER}/layout.h" "${CMAKE_CURRENT_SOURCE_DIR}/src/sampling/rules.h")
 find_program(SPIRV_VAL spirv-val) # a second look; it is a package of its own
 
 set(SHADER_FILES "")
@@ -22,7 +22,8 @@ foreach(name ${SHADERS})
     endif()
     add_custom_command(
         OUTPUT "${binary}"
-        COMMAND ${GLSLC} --target-env=vulkan1.2 -O -Werror -I "${SHADER_FOLDER}" -o "${binary}"
+        COMMAND ${GLSLC} --target-env=vulkan1.2 -O -Werror -I "${SHADER_FOLDER}"
+                -I "${CMAKE_CURRENT_SOURCE_DIR}/src" -o "${binary}"
                 "${SHADER_FOLDER}/${source}"
         ${validation}
         DEPENDS "${SHADER_FOLDER}/${source}" ${SHADER_INCLUDES}

@@ -16,7 +16,7 @@ struct normal_bin {
 normal_bin bin_at(uint bin)
 {
     const vec4 numbers = vector_at(STATE.bins, bin);
-    precise float edge = 0.6 * numbers.w;
+    precise float edge = RULE_BIN_EDGE * numbers.w;
     return normal_bin(numbers.xyz, numbers.w, edge, divide(1.0, 4.0 * edge));
 }
 
@@ -25,7 +25,7 @@ float bin_cosine(normal_bin bin, float cosine)
 {
     precise float within = max(cosine + bin.reach, 0.0), risen = max(cosine + bin.edge, 0.0);
     precise float bent = risen * risen * bin.bend;
-    precise float result = (cosine < bin.edge ? bent : cosine) + 0.01 * within;
+    precise float result = (cosine < bin.edge ? bent : cosine) + RULE_BIN_LEAST * within;
     return result;
 }
 

@@ -9,7 +9,7 @@ struct control_line {
 
 control_line control_line_of(vec4 bin, float cosine)
 {
-    const float half_reach = 0.4 * bin.w, t = clamp(cosine / half_reach, -1.0, 1.0);
+    const float half_reach = RULE_CONTROL_HALF * bin.w, t = clamp(cosine / half_reach, -1.0, 1.0);
     const float slope = 0.5 + t * (0.75 - 0.25 * (t * t));
     return control_line(slope, half_reach * (0.25 * (1.0 + t) * (1.0 + t) - slope * t));
 }

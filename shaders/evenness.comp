@@ -9,7 +9,7 @@
 #include "division.glsl"
 #include "face_light.glsl"
 
-const float GREATEST_VARIANCE = 0.016, ANGLE = 2.0943951; // of a face, sr
+const float ANGLE = 2.0943951; // of a face, sr
 
 shared float parts[gl_WorkGroupSize.x];
 
@@ -51,6 +51,6 @@ void main()
     for (uint i = 1u; i < gl_WorkGroupSize.x; i++)
         sum += parts[i];
     const float mean = light_of_face(face).mean;
-    if (!(sum <= GREATEST_VARIANCE * mean * mean * ANGLE))
+    if (!(sum <= RULE_EVEN_VARIANCE * mean * mean * ANGLE))
         atomicAdd(STATE.sums.all.uneven_faces, 1u);
 }

@@ -23,7 +23,6 @@
 
 #define LAYOUT_FACES 6
 #define LAYOUT_VIEWS (4 * LAYOUT_FACES) /* of quarters of faces */
-#define LAYOUT_TECHNIQUES 7 /* as in strategy.h: the last is the surface's */
 #define LAYOUT_TILES_PER_EDGE 16
 #define LAYOUT_TILE_GROUP 16 /* tiles that follow each other */
 #define LAYOUT_TILE_RUN 16   /* groups that follow each other */
@@ -32,7 +31,6 @@
 #define LAYOUT_REFINED_TIMES 6
 /* See lobe_variance.h. */
 #define LAYOUT_LOBE_CLASSES 3
-#define LAYOUT_LOBE_SAMPLES_PER_POOL 16
 
 #define LAYOUT_TILES_MOST (LAYOUT_FACES * LAYOUT_TILES_PER_EDGE * LAYOUT_TILES_PER_EDGE)
 

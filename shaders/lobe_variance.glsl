@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // lobe_variance.glsl - how uneven the light in a specular lobe is: as lobe_variance.h.
 
-const float LOBE_POOL_PART = 1.0 / float(LAYOUT_LOBE_SAMPLES_PER_POOL);
+const float LOBE_POOL_PART = 1.0 / float(RULE_LOBE_SAMPLES_PER_POOL);
 
 // GGX's alpha^2 of the lobes of a class, widened by a tile, in relation to the square of tile_edge.
 float lobe_class_width(uint class_of_lobe)
@@ -11,7 +11,8 @@ float lobe_class_width(uint class_of_lobe)
 
 float lobe_class_most(uint class_of_lobe, bool is_free)
 {
-    precise float most = class_of_lobe == 0u ? 1.6 : class_of_lobe == 1u ? 0.55 : 0.2, less = 0.3 * most;
+    precise float most = class_of_lobe == 0u ? RULE_LOBE_MOST_0 : class_of_lobe == 1u ? RULE_LOBE_MOST_1 : RULE_LOBE_MOST_2;
+    precise float less = RULE_LOBE_WITH_RAYS * most;
     return is_free ? most : less;
 }
 
@@ -19,7 +20,8 @@ float lobe_class_most(uint class_of_lobe, bool is_free)
 uint lobe_class(float alpha2)
 {
     precise float width = alpha2 / (STATE.tile_edge * STATE.tile_edge) + 1.0;
-    return (width >= 1.4 ? 1u : 0u) + (width >= 2.8 ? 1u : 0u) + (width >= 5.6 ? 1u : 0u);
+    return (width >= RULE_LOBE_WIDTH_0 ? 1u : 0u) + (width >= RULE_LOBE_WIDTH_1 ? 1u : 0u) +
+           (width >= RULE_LOBE_WIDTH_2 ? 1u : 0u);
 }
 
 // tiles.peak. light: of the tile.

@@ -6,7 +6,7 @@
 #include "common.glsl"
 #include "lobe_variance.glsl"
 
-const float NEAR_COSINE = 0.82, LOBE_INTEGRAL = 12.566370614359172, POOL_VARIANCE = 0.5;
+const float LOBE_INTEGRAL = 12.566370614359172;
 
 // By class: the lobe; lobe x light; (lobe x light)^2 / density of the samples, those of the pool for less.
 shared vec3 parts[LAYOUT_LOBE_CLASSES * gl_WorkGroupSize.x];
@@ -32,7 +32,7 @@ void add_part(vec3 axis, sky_part part, float by_pool, inout vec3 sums[LAYOUT_LO
         const float value = lobe_at(cosine, lobe_class_width(i) * edge2 + part.variance);
         const float light = value * part.light;
         const float of_lobe = (1.0 - LOBE_POOL_PART) / LOBE_INTEGRAL * value, of_pool = by_pool * part.peak;
-        const float density = of_lobe + of_pool, counted = of_lobe + POOL_VARIANCE * of_pool;
+        const float density = of_lobe + of_pool, counted = of_lobe + RULE_LOBE_POOL_VARIANCE * of_pool;
         const float square = density > 0.0 ? light * (value * part.peak * counted / (density * density)) : 0.0;
         sums[i] += vec3(value * part.angle, light, square);
     }
@@ -42,7 +42,7 @@ void add_part(vec3 axis, sky_part part, float by_pool, inout vec3 sums[LAYOUT_LO
 void add_group(vec3 axis, uint group, float by_pool, inout vec3 sums[LAYOUT_LOBE_CLASSES])
 {
     const uint row = LAYOUT_GROUP_ROWS * group;
-    if (!(dot(axis, vector_at(STATE.groups, row).xyz) > NEAR_COSINE)) {
+    if (!(dot(axis, vector_at(STATE.groups, row).xyz) > RULE_LOBE_NEAR_COSINE)) {
         const vec4 light = vector_at(STATE.groups, row + 1u);
         const sky_part all = sky_part(light.xyz, vector_at(STATE.groups, row + 4u).w, light.w,
                                       vector_at(STATE.groups, row + 3u).w, vector_at(STATE.groups, row + 2u).x);

@@ -49,7 +49,7 @@ vec3 turned(vec3 v)
 // What this is times the spread of a tile: see tile_lobe in point_tiles.h.
 float to_surface(brdf b)
 {
-    return 1.25 / (is_ggx(b.kind) ? 2.0 * sqrt(b.shape) : 1.665 / sqrt(max(b.shape, 1.0)));
+    return RULE_EVEN_WIDTH / (is_ggx(b.kind) ? 2.0 * sqrt(b.shape) : RULE_PHONG_WIDTH / sqrt(max(b.shape, 1.0)));
 }
 
 // See tile_lobe_need().

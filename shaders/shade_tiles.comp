@@ -83,7 +83,7 @@ tile_lobe prepare_lobe(brdf b, vec3 geometric_normal)
         lobe.specular += luminance(b.colours[2]) * schlick_weight(b.view_cosine);
         lobe.specular *= INVERSE_PI;
     } else {
-        lobe.width = 1.0 / max(b.shape, 1e-3) + 0.3 * edge2;
+        lobe.width = 1.0 / max(b.shape, 1e-3) + RULE_PHONG_TILE * edge2;
         lobe.specular /= b.shape + 2.0;
     }
     return lobe;

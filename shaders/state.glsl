@@ -5,6 +5,7 @@
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 
 #include "layout.h"
+#include "sampling/rules.h"
 
 layout(buffer_reference, std430, buffer_reference_align = 8) buffer state_of_light
 {

@@ -50,7 +50,7 @@ float control_finite(float x);
 /* Beyond this cosine, above 0 or below, all normals of a bin are on the same side of a tile. */
 static inline float control_half(const normal_bin *bin)
 {
-    return 0.4f * bin->reach;
+    return RULE_CONTROL_HALF * bin->reach;
 }
 
 /* a and c for a bin and a tile whose centres' cosine is given: least squares over the cosines that normals and

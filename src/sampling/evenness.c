@@ -2,10 +2,11 @@
 #include "sampling/evenness.h"
 
 #include "core/context.h"
+#include "sampling/rules.h"
 
-/* Variance at a small scale, as part of the square of the mean, up to which samples of the surface win: with 64 of them
- * they have this / 64 as error, and pools have 2.5e-4 whatever the map (docs/method.md). */
-static const double GREATEST_VARIANCE = 0.016;
+/* Up to which samples of the surface win: with 64 of them they have this / 64 as error, and pools have 2.5e-4 whatever
+ * the map (docs/method.md). */
+static const double GREATEST_VARIANCE = (double)RULE_EVEN_VARIANCE;
 
 typedef struct evenness_work {
     const tiles *tiles;

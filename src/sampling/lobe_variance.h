@@ -8,6 +8,8 @@
 #ifndef HELIOSTAT_SRC_LOBE_VARIANCE_H
 #define HELIOSTAT_SRC_LOBE_VARIANCE_H
 
+#include "sampling/rules.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -16,7 +18,7 @@
 enum { LOBE_CLASSES = 3, LOBE_UNASKED = LOBE_CLASSES };
 
 /* One of so many samples of a point in a calm lobe reads the pool. */
-enum { LOBE_SAMPLES_PER_POOL = 16 };
+enum { LOBE_SAMPLES_PER_POOL = RULE_LOBE_SAMPLES_PER_POOL };
 
 static const float LOBE_POOL_PART = 1.0f / LOBE_SAMPLES_PER_POOL;
 
@@ -30,15 +32,15 @@ static inline float lobe_class_width(uint32_t class)
  * that they take. That is little beside the time of rays, where it is not known that nothing is in the way. */
 static inline float lobe_class_most(uint32_t class, bool is_free)
 {
-    const float most = class == 0 ? 1.6f : class == 1 ? 0.55f : 0.2f;
-    return is_free ? most : 0.3f * most;
+    const float most = class == 0 ? RULE_LOBE_MOST_0 : class == 1 ? RULE_LOBE_MOST_1 : RULE_LOBE_MOST_2;
+    return is_free ? most : RULE_LOBE_WITH_RAYS * most;
 }
 
 /* Of lobes that shine alone. alpha2: GGX's alpha^2, or 1 / exponent; edge: tiles.edge. */
 static inline uint32_t lobe_class(float alpha2, float edge)
 {
     const float width = alpha2 / (edge * edge) + 1.0f;
-    return (width >= 1.4f) + (width >= 2.8f) + (width >= 5.6f);
+    return (width >= RULE_LOBE_WIDTH_0) + (width >= RULE_LOBE_WIDTH_1) + (width >= RULE_LOBE_WIDTH_2);
 }
 
 #endif

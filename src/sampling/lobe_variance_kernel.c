@@ -7,11 +7,11 @@
 #include <string.h>
 
 /* Groups whose middle is nearer to the axis are looked at tile by tile, others as a whole: cos 35 degrees. */
-static const float NEAR_COSINE = 0.82f;
+static const float NEAR_COSINE = RULE_LOBE_NEAR_COSINE;
 
 /* Samples of the pool follow the light so evenly that they leave about this part of the variance of as many that do
  * not. */
-static const float POOL_VARIANCE = 0.5f;
+static const float POOL_VARIANCE = RULE_LOBE_POOL_VARIANCE;
 
 /* Of lobe_at() over all directions. */
 static const float LOBE_INTEGRAL = 4.0f * (float)PI;

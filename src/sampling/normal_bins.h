@@ -10,6 +10,7 @@
 #define HELIOSTAT_SRC_NORMAL_BINS_H
 
 #include "sampling/lobe_variance.h"
+#include "sampling/rules.h"
 #include "sampling/tiles.h"
 
 enum { NORMAL_BINS_DEFAULT = 8, NORMAL_BINS_MOST = 32 };
@@ -74,12 +75,12 @@ static inline uint32_t normal_bins_listed(const normal_bins *b)
 /* The weight of a tile's light at a cosine between its centre and that of a bin, see docs/method.md. */
 static inline float normal_bin_cosine(const normal_bin *bin, float cosine)
 {
-    const float edge = 0.6f * bin->reach;
+    const float edge = RULE_BIN_EDGE * bin->reach;
     float within = cosine + bin->reach, risen = cosine + edge;
     within = within > 0.0f ? within : 0.0f;
     risen = risen > 0.0f ? risen : 0.0f;
     float bent = risen * risen * (1.0f / (4.0f * edge)); /* meets the cosine at `edge`, where both rise by 1 */
-    return (cosine < edge ? bent : cosine) + 0.01f * within;
+    return (cosine < edge ? bent : cosine) + RULE_BIN_LEAST * within;
 }
 
 /* From one bin that is looked at to the next: odd, so that it meets all columns of cells. */

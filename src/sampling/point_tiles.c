@@ -1,19 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 #include "sampling/point_tiles.h"
 
-/* The lobe's width at which light and BRDF get equally many samples is this part of a tile's radius. */
-static const float EVEN_WIDTH = 1.25f;
+#include "sampling/rules.h"
 
 /* Angle from the mirror direction at which the lobe has fallen to a quarter. */
 static float lobe_width(const brdf *b)
 {
-    return b->kind == HELIO_MATERIAL_GGX ? 2.0f * sqrtf(b->alpha2) : 1.665f / sqrtf(fmaxf(b->exponent, 1.0f));
+    return b->kind == HELIO_MATERIAL_GGX ? 2.0f * sqrtf(b->alpha2) : RULE_PHONG_WIDTH / sqrtf(fmaxf(b->exponent, 1.0f));
 }
 
 /* 0 for a lobe as wide as the sky, 1 for a mirror. */
 static float narrowness(const tiles *t, const brdf *b)
 {
-    return t->radius / (t->radius + lobe_width(b) / EVEN_WIDTH);
+    return t->radius / (t->radius + lobe_width(b) / RULE_EVEN_WIDTH);
 }
 
 float tile_lobe_need(const tiles *t, const brdf *b)
@@ -25,7 +24,7 @@ float tile_lobe_need(const tiles *t, const brdf *b)
 static void prepare_phong(tile_lobe *lobe, const tiles *t, const brdf *b)
 {
     lobe->axis = b->mirror;
-    lobe->width = 1.0f / fmaxf(b->exponent, 1e-3f) + 0.3f * t->edge * t->edge;
+    lobe->width = 1.0f / fmaxf(b->exponent, 1e-3f) + RULE_PHONG_TILE * t->edge * t->edge;
     lobe->specular /= b->exponent + 2.0f;
 }
 
@@ -46,7 +45,7 @@ void tile_lobe_prepare(tile_lobe *lobe, const tiles *t, const brdf *b)
                         .view_cosine = b->view_cosine,
                         .geometric_normal = b->normal};
     lobe->slope = 0.25f / t->edge;
-    lobe->to_surface = EVEN_WIDTH / lobe_width(b);
+    lobe->to_surface = RULE_EVEN_WIDTH / lobe_width(b);
     lobe->least_part = (1.0f + (POINT_REFINED_TIMES - 1) * tile_lobe_need(t, b)) / POINT_REFINED_PARTS;
     lobe->diffuse = vec3_luminance(b->colours[0]);
     lobe->specular = vec3_luminance(b->colours[1]);

@@ -14,9 +14,7 @@ _Static_assert((int)LAYOUT_TILE_GROUP == (int)TILE_GROUP && (int)LAYOUT_TILE_RUN
                    (int)LAYOUT_TILES_MOST == (int)TILES_MOST && (int)LAYOUT_REFINED_PARTS == (int)POINT_REFINED_PARTS &&
                    (int)LAYOUT_REFINED_TIMES == (int)POINT_REFINED_TIMES,
                "as in tiles.h and point_tiles.h");
-_Static_assert((int)LAYOUT_LOBE_CLASSES == (int)LOBE_CLASSES &&
-                   (int)LAYOUT_LOBE_SAMPLES_PER_POOL == (int)LOBE_SAMPLES_PER_POOL,
-               "as in lobe_variance.h");
+_Static_assert((int)LAYOUT_LOBE_CLASSES == (int)LOBE_CLASSES, "as in lobe_variance.h");
 
 /* ---- creation ----------------------------------------------------------------------------- */
 
