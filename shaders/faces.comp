@@ -6,14 +6,12 @@
 #include "fixed_point.glsl"
 #include "face_sums.glsl"
 
-const int LEAST_WORTH_BITS = 60;
-
 void find_worths(layout_row_sum sums[LAYOUT_FACES])
 {
     const int to = exponent_of_faces(sums, 1);
     for (uint face = 0u; face < LAYOUT_FACES; face++) {
-        const bool is_dark = sums[face].sum == 0u || top_bit(sums[face]) + to < -LEAST_WORTH_BITS;
-        const float least = sums[face].sum != 0u ? power_of_two(-LEAST_WORTH_BITS) : 0.0;
+        const bool is_dark = sums[face].sum == 0u || top_bit(sums[face]) + to < -RULE_FACE_BITS;
+        const float least = sums[face].sum != 0u ? power_of_two(-RULE_FACE_BITS) : 0.0;
         STATE.sums.all.worth[face] = is_dark ? least : scale_sum(sums[face], 1.0, to);
     }
 }

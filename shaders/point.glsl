@@ -126,8 +126,7 @@ float beta_of(uint face, vec3 normal)
     return max(beta, 0.0);
 }
 
-// As in points_kernel.c: 2^-90, 2^-18.
-const float LEAST_WORTH = 8.07793567e-28, PART_OF_ANY = LIGHT == LAYOUT_LIGHT_FACES ? 1.0 / 262144.0 : 0.0;
+const float FACE_EXTRA = LIGHT == LAYOUT_LIGHT_FACES ? RULE_FACE_EXTRA : 0.0;
 
 float worth_of_face(uint face, vec3 normal)
 {
@@ -157,14 +156,14 @@ void expect_counts(vec3 normal, float share, inout prepared_point p)
 {
     float worths[LAYOUT_FACES];
     const float total = find_worths(normal, p.bin, worths);
-    const bool lit = total >= LEAST_WORTH;
+    const bool lit = total >= RULE_FACE_LEAST;
     // Where compensated tables only say that there is nothing to compensate, the surface gets all.
     const float of_dark = STATE.weighting == LAYOUT_COMPENSATED ? 1.0 : 0.0, samples = float(STEP.samples);
     precise float by_surface = samples * (lit ? share : of_dark), by_light = samples - by_surface;
-    precise float to_divide = by_light * (1.0 - float(LAYOUT_FACES) * PART_OF_ANY), least = by_light * PART_OF_ANY;
+    precise float to_divide = by_light * (1.0 - float(LAYOUT_FACES) * FACE_EXTRA), least = by_light * FACE_EXTRA;
     const float light = lit ? divide(to_divide, total) : 0.0;
     for (uint k = 0u; k < TECHNIQUES; k++) {
-        precise float expected = worths[k] * light + (worths[k] >= LEAST_WORTH ? least : 0.0);
+        precise float expected = worths[k] * light + (worths[k] >= RULE_FACE_LEAST ? least : 0.0);
         p.expected[k] = expected;
     }
     p.surface_expected = by_surface;

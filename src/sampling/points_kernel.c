@@ -4,6 +4,7 @@
  * the pools. One lane for each point, in steps that each are a plain loop. */
 #include "core/random.h"
 #include "sampling/kernels.h"
+#include "sampling/rules.h"
 
 #include <string.h>
 
@@ -91,13 +92,6 @@ typedef struct pool_worths {
     alignas(64) float total[POINT_BLOCK];
 } pool_worths;
 
-/* A face that is worth less to a point rises above its horizon by rounding alone, and machines may take that for 0. */
-static const float LEAST_WORTH = 0x1p-90f;
-
-/* Of the light samples, which each face with light gets beyond its part: more than what counts are rounded by, so that
- * no face is lost to that. */
-static const float PART_OF_ANY = 0x1p-18f;
-
 /* no_beta is a constant where this is expanded. */
 static inline __attribute__((always_inline)) void weigh_face(const point_block *block, uint32_t count, uint32_t face,
                                                              float flux, bool no_beta, pool_worths *worths)
@@ -139,7 +133,7 @@ static void expect(uint32_t count, const float *worths, const float *shares, con
 #pragma omp simd
     for (uint32_t i = 0; i < count; i++) {
         const float worth = worths[i], more = least[i];
-        expected[i] = worth * shares[i] + (worth >= LEAST_WORTH ? more : 0.0f);
+        expected[i] = worth * shares[i] + (worth >= RULE_FACE_LEAST ? more : 0.0f);
     }
 }
 
@@ -149,7 +143,7 @@ static void expect(uint32_t count, const float *worths, const float *shares, con
 static void expect_counts(const helio_pools *pools, const helio_estimate_desc *desc, point_block *block)
 {
     const uint32_t count = padded(block);
-    const float samples = (float)desc->samples, of_any = pools->techniques > 1 ? PART_OF_ANY : 0.0f;
+    const float samples = (float)desc->samples, of_any = pools->techniques > 1 ? RULE_FACE_EXTRA : 0.0f;
     const bool is_compensated = pools->tables->weighting == HELIO_WEIGHTING_COMPENSATED;
     pool_worths worths;
     alignas(64) float shares[POINT_BLOCK], least[POINT_BLOCK];
@@ -161,7 +155,7 @@ static void expect_counts(const helio_pools *pools, const helio_estimate_desc *d
             worths.total[i] = 1.0f;
 #pragma omp simd
     for (uint32_t i = 0; i < count; i++) {
-        bool lit = worths.total[i] >= LEAST_WORTH;
+        bool lit = worths.total[i] >= RULE_FACE_LEAST;
         float by_surface = samples * (lit ? block->surface_share[i] : is_compensated ? 1.0f : 0.0f);
         float by_light = lit ? samples - by_surface : 0.0f;
         least[i] = by_light * of_any;

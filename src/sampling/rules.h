@@ -5,6 +5,14 @@
 #ifndef HELIOSTAT_SRC_RULES_H
 #define HELIOSTAT_SRC_RULES_H
 
+/* Faces, by what they are worth. One with light is worth 2^-60 at least, where the brightest is worth 1 or more. Less
+ * than 2^-90 to a point a face is worth by rounding alone, when it has just come above the horizon, and machines may
+ * take that for 0. And 2^-18 of the light samples each face gets beyond its part: more than what counts are rounded by,
+ * so that no face is lost to that. */
+#define RULE_FACE_BITS 60
+#define RULE_FACE_LEAST 8.07793567e-28f    /* 2^-90 */
+#define RULE_FACE_EXTRA 3.814697265625e-6f /* 2^-18 */
+
 /* Bins of normals, in parts of a bin's reach: up to where the cosine is bent, and what each tile within has at least;
  * half of what the cosines of the control variate are apart. */
 #define RULE_BIN_EDGE 0.6f

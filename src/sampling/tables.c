@@ -11,13 +11,11 @@
 #include "core/name_list.h"
 #include "core/random.h"
 #include "sampling/kernels.h"
+#include "sampling/rules.h"
 
 #include <float.h>
 
-enum {
-    ROWS_AT_ONCE = 16,     /* the piece of work of a thread */
-    LEAST_WORTH_BITS = 60, /* a face with light is worth 2^-this at least, where the brightest is worth 1 or more */
-};
+enum { ROWS_AT_ONCE = 16 }; /* the piece of work of a thread */
 
 /* ---- creation ---- */
 
@@ -217,8 +215,8 @@ static void find_worths(helio_tables *tables)
     const row_sum *sums = tables->weighting == HELIO_WEIGHTING_PAPER ? tables->face_fluxes : tables->face_sums;
     const int to = common_exponent(sums, CUBE_FACES, 1);
     for (size_t face = 0; face < CUBE_FACES; face++) {
-        const bool is_dark = sums[face].sum == 0 || top_bit(sums[face]) + to < -LEAST_WORTH_BITS;
-        const float least = sums[face].sum != 0 ? ldexpf(1.0f, -LEAST_WORTH_BITS) : 0.0f;
+        const bool is_dark = sums[face].sum == 0 || top_bit(sums[face]) + to < -RULE_FACE_BITS;
+        const float least = sums[face].sum != 0 ? ldexpf(1.0f, -RULE_FACE_BITS) : 0.0f;
         tables->worth[face] = is_dark ? least : scale_sum(sums[face], 1.0f, to);
     }
 }
